@@ -275,21 +275,9 @@ pub fn marks_of(path: &Path) -> Option<Marks> {
     Some((about.modified().ok()?, about.len()))
 }
 
-/// The processor's name, where the system tells it.
-pub fn processor() -> String {
-    let told = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = told.lines().find(|line| line.starts_with("model name"));
-    let name = line.and_then(|line| line.split_once(':'));
-    let name = name.map_or("unknown processor", |(_, name)| name.trim());
-    name.replace("(R)", "").replace("(TM)", "")
-}
-
-/// How much memory this program has in use, where the system tells.
-pub fn resident_bytes() -> Option<u64> {
-    let told = fs::read_to_string("/proc/self/status").ok()?;
-    let line = told.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024)
+/// The path that means the same file wherever the program works next; itself where that is nowhere.
+pub fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Whether two paths are those of one file, links followed.
@@ -338,13 +326,17 @@ impl Stamp {
         }
     }
 
+    /// Of a file as it is now; `None` if it cannot be read.
+    pub fn read(path: &Path) -> Option<Self> {
+        let modified = time_of(path);
+        read_file(path).ok().map(|bytes| Self::of(&bytes, modified))
+    }
+
     /// Of a file that had this hash, as [`Self::hash`] gives it: as it is now, if it holds the same still.
     pub fn of_hash(hash: &str, path: &Path) -> Option<Self> {
         let hash = blake3::Hash::from_hex(hash).ok()?;
-        let now = fs::read(path)
-            .ok()
-            .map(|bytes| Self::of(&bytes, time_of(path)));
-        Some(now.filter(|now| now.hash == hash).unwrap_or(Self {
+        let now = Self::read(path).filter(|now| now.hash == hash);
+        Some(now.unwrap_or(Self {
             hash,
             length: 0,
             modified: None,
@@ -410,7 +402,12 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         // It ends with the path of a file that nobody has asked for.
         let words = error.to_string();
         let why = words.split(" at path ").next().unwrap_or(&words);
-        io::Error::new(error.kind(), why.to_owned())
+        let why = match error.kind() {
+            // Of a file that may be written to, nobody would look for the reason there.
+            io::ErrorKind::PermissionDenied => format!("its folder may not be written to: {why}"),
+            _ => why.to_owned(),
+        };
+        io::Error::new(error.kind(), why)
     })
 }
 

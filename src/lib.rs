@@ -53,6 +53,8 @@ pub mod export;
 
 pub mod lab;
 
+pub mod machine;
+
 pub mod worker;
 
 pub mod editor;

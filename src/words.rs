@@ -9,6 +9,13 @@ pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, one: &str) -
     format!("{number} {one}{s}")
 }
 
+/// A word with a large first letter.
+pub fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
 /// Most values that a message names.
 const MOST_NAMES: usize = 3;
 

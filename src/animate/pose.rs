@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::path::{eased, orbit};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
-use crate::scene::{Camera, Interpolation, Key, Owners, SAME_TIME, Scene, Value};
+use crate::scene::{Camera, Interpolation, Key, Owners, Projection, SAME_TIME, Scene, Value};
 
 /// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
@@ -111,13 +111,15 @@ fn point(value: Value) -> DVec3 {
     }
 }
 
-/// How far a camera moves and turns from one frame to the next.
+/// How far a camera moves, turns and zooms from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraChange {
     /// World units.
     pub distance: f64,
     /// Degrees that it turns by, about whatever axis.
     pub turn: f64,
+    /// The natural logarithm of how many times as large or as small things become by its lens.
+    pub zoom: f64,
 }
 
 /// The step from one camera to another.
@@ -138,6 +140,17 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     CameraChange {
         distance: (to.position - from.position).length(),
         turn: (2.0 * half).to_degrees(),
+        zoom: match (from.projection, to.projection) {
+            (Projection::Perspective, Projection::Perspective) => {
+                (to.projection_distance / from.projection_distance).ln()
+            }
+            (Projection::Orthographic, Projection::Orthographic) => {
+                (to.orthographic_height / from.orthographic_height).ln()
+            }
+            // A cut.
+            _ => 0.0,
+        }
+        .abs(),
     }
 }
 

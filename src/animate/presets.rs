@@ -53,16 +53,17 @@ impl Preset {
         }
     }
 
-    /// Keys for a flight of so many seconds from `camera` around or towards `target`.
+    /// Keys for a flight of so many seconds from `camera` around or towards `target`. They are all in one place where there
+    /// is no way to go: for an ellipse from straight above or below, and from the target itself.
     pub fn keys(self, camera: &Camera, target: DVec3, seconds: f64) -> Vec<Key<Camera>> {
         let arm = camera.position - target;
+        let is_upright = arm.x.hypot(arm.z) < arm.length() * 1e-9;
+        let heading = heading(camera).filter(|_| is_upright);
         match self {
             Self::Turntable => {
                 let place = |share: f64| target + turned(arm, share * TAU);
                 let mut keys = looking(camera, target, 4, seconds, place);
                 // From above or below, the picture turns.
-                let is_upright = arm.x.hypot(arm.z) < arm.length() * 1e-9;
-                let heading = heading(camera).filter(|_| is_upright);
                 for key in &mut keys {
                     key.interpolation = Interpolation::Orbit { around: target };
                     if let Some(heading) = heading {
@@ -94,12 +95,21 @@ impl Preset {
                 let aside = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
                 target + DVec3::new(arm.x * cosine, arm.y, arm.z * cosine) + aside * (OBLONG * sine)
             }),
-            Self::FigureEight => looking(camera, target, ROUND_KEYS, seconds, |share| {
-                // Gerono's lemniscate, in front of the target.
-                let (sine, cosine) = (share * TAU).sin_cos();
-                let aside = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
-                camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
-            }),
+            Self::FigureEight => {
+                let level = heading.map_or(DVec3::new(arm.x, 0.0, arm.z), |way| way * arm.length());
+                let aside = turned(level, TAU / 4.0);
+                let mut keys = looking(camera, target, ROUND_KEYS, seconds, |share| {
+                    // Gerono's lemniscate, in front of the target.
+                    let (sine, cosine) = (share * TAU).sin_cos();
+                    camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
+                });
+                // From above or below, the upper edge stays where it is.
+                for key in keys.iter_mut().filter(|_| heading.is_some()) {
+                    key.value.look_at = target - key.value.position;
+                    key.value.up = heading.unwrap_or(key.value.up);
+                }
+                keys
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Other timing for the same way.
 
 use super::path::nearest;
-use super::{CameraPath, motion_between};
+use super::{CameraChange, CameraPath, motion_between};
 use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Track,
 };
@@ -12,7 +12,7 @@ const STEPS: usize = 16;
 const CLOSEST: f64 = 1.0 / 240.0;
 /// A segment with less than this share of the flight's mean speed is a pause.
 const PAUSE_SHARE: f64 = 0.05;
-/// World lengths that a turn of one radian counts as, in shares of the way's length.
+/// World lengths that a turn of one radian counts as, in shares of the way's length; so does a zoom to e times the size.
 const TURN_SHARE: f64 = 0.2;
 
 /// Another timing.
@@ -102,11 +102,11 @@ fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
     keys.iter().map(later).collect()
 }
 
-/// Length of each segment: of its curve, where it is one, and of its turns. What is cut has none.
+/// Length of each segment: of its curve, where it is one, and of its turns and zooms. What is cut has none.
 fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
     let path = CameraPath::new(keys);
     let segment = |pair: &[Key<Camera>]| {
-        let mut sum = super::CameraChange::default();
+        let mut sum = CameraChange::default();
         if pair[0].interpolation == Interpolation::Hold {
             return sum;
         }
@@ -119,17 +119,20 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
                 let motion = motion_between(from, to);
                 sum.distance += motion.distance;
                 sum.turn += motion.turn;
+                sum.zoom += motion.zoom;
             }
             before = here;
         }
         sum
     };
-    let motions: Vec<super::CameraChange> = keys.windows(2).map(segment).collect();
+    let motions: Vec<CameraChange> = keys.windows(2).map(segment).collect();
     let way: f64 = motions.iter().map(|motion| motion.distance).sum();
     // A camera that only turns has its turns alone.
     let radian = if way > 0.0 { way * TURN_SHARE } else { 1.0 };
-    let length =
-        |motion: &super::CameraChange| motion.distance.max(motion.turn.to_radians() * radian);
+    let length = |motion: &CameraChange| {
+        let turned = motion.turn.to_radians().max(motion.zoom);
+        motion.distance.max(turned * radian)
+    };
     motions.iter().map(length).collect()
 }
 

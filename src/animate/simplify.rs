@@ -40,7 +40,7 @@ pub struct Simplified {
     pub keys: Vec<Key<Camera>>,
     /// How far off the picture is at most at a sample, in image heights.
     pub worst: Worst,
-    /// How often the hand jumped: the picture moved farther from one sample to the next than a hand moves.
+    /// How often the view jumped: the picture moved farther from one sample to the next than a hand moves.
     pub jumps: usize,
 }
 
@@ -164,7 +164,7 @@ struct Search<'t> {
     tolerance: f64,
     /// Last samples before the projection changes.
     cuts: BTreeSet<usize>,
-    /// The same, and before the hand jumped.
+    /// The same, and before the view jumped.
     edges: BTreeSet<usize>,
 }
 
@@ -191,7 +191,12 @@ fn jumps(take: &Take, seen: &[Vec<Seen>]) -> BTreeSet<usize> {
         let mut others: Vec<f64> = others.collect();
         others.sort_by(f64::total_cmp);
         let usual = others.get(others.len() / 2).copied().unwrap_or(0.0);
-        steps[*n] > JUMP.max(usual * JUMP_FACTOR)
+        // A short turn between two rests is none, though most around it stand still: it takes three samples or more.
+        let near = n.saturating_sub(2)..(n + 3).min(steps.len());
+        let mut near: Vec<f64> = near.map(|near| steps[near]).collect();
+        near.sort_by(f64::total_cmp);
+        let third = near.iter().rev().nth(2).copied().unwrap_or(0.0);
+        steps[*n] > JUMP.max(usual.max(third) * JUMP_FACTOR)
     };
     (0..steps.len()).filter(is_jump).collect()
 }

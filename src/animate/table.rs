@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::path::unwound;
 use crate::scene::{
-    Camera, Document, Key, Orientation, Projection, SAME_TIME, SceneError, format_number,
+    Camera, Document, Key, MAX_SECONDS, Orientation, Projection, SAME_TIME, SceneError,
+    format_number,
 };
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
@@ -64,8 +65,18 @@ fn number_of(cell: &str, delimiter: u8) -> Option<f64> {
 /// # Errors
 /// [`TableError`], with the line.
 pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableError> {
-    let fail = |line: usize, what: String| TableError { line, what };
     let text = text.trim_start_matches('\u{feff}');
+    // Before the names there may be blank lines.
+    let is_blank = |line: &str| line.trim().is_empty();
+    let blank: Vec<&str> = text
+        .split_inclusive('\n')
+        .take_while(|line| is_blank(line))
+        .collect();
+    let text = &text[blank.concat().len()..];
+    let fail = |line: usize, what: String| TableError {
+        line: line + blank.len(),
+        what,
+    };
     let delimiter = delimiter_of(text);
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -116,8 +127,8 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         };
         let projection = match cell("projection") {
             None => like.projection,
-            Some("Perspective") => Projection::Perspective,
-            Some("Orthographic") => Projection::Orthographic,
+            Some(word) if word.eq_ignore_ascii_case("perspective") => Projection::Perspective,
+            Some(word) if word.eq_ignore_ascii_case("orthographic") => Projection::Orthographic,
             Some(other) => {
                 let expected = "projection must be Perspective or Orthographic";
                 return Err(fail(line, format!("{expected}, found {other:?}")));
@@ -130,7 +141,13 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
             orthographic_height: number("orthographic_height", like.orthographic_height)?,
             ..like.clone()
         };
-        let key = Key::new(number("time", 0.0)?, angles.apply(&camera));
+        let time = number("time", 0.0)?;
+        if !(0.0..=MAX_SECONDS).contains(&time) {
+            let time = format_number(time);
+            let expected = format!("time must be between 0 and {MAX_SECONDS}");
+            return Err(fail(line, format!("{expected}, found {time}")));
+        }
+        let key = Key::new(time, angles.apply(&camera));
         keys.push((line, key));
     }
     // The lines of a table may be in any order.
@@ -179,8 +196,12 @@ pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
         })?;
         return Ok(document.scene.animation.keys.clone());
     }
-    ron::from_str(text).map_err(|error| TableError {
+    let keys: Result<Vec<Key<Camera>>, _> = ron::from_str(text);
+    let mut keys = keys.map_err(|error| TableError {
         line: error.span.start.line,
         what: error.code.to_string(),
-    })
+    })?;
+    // They may be in any order, as in a table.
+    keys.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(keys)
 }

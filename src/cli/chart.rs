@@ -15,15 +15,16 @@ use super::goal::{error, time};
 use super::scene::read_scene;
 use super::target::{check_table, picture_format};
 use crate::export::write_text;
-use crate::files::{is_same_file, processor};
+use crate::files::is_same_file;
 use crate::lab::{
-    Figure, Growth, PictureLook, Study, capitalised, cheapest_within, closest_within,
-    costs_of_choices, csv, scaling, scaling_csv, table,
+    Figure, Growth, PictureLook, Study, cheapest_within, closest_within, costs_of_choices, csv,
+    scaling, scaling_csv, table,
 };
+use crate::machine::processor;
 use crate::plan::RenderRequest;
 use crate::scene::{Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
-use crate::words::counted;
+use crate::words::{capitalised, counted};
 
 /// Primitives of the largest scene that growth is measured in.
 const MOST_PRIMITIVES: u32 = 1_000_000;

@@ -40,6 +40,11 @@ impl CliError {
         Self::Failed(error.into())
     }
 
+    /// Nobody asked a trace to stop, and it did.
+    pub fn no_picture() -> Self {
+        Self::failed("the trace ended without a picture")
+    }
+
     /// Says it on stderr; the exit code for it.
     pub fn report(&self) -> ExitCode {
         report_error(&self.to_string());

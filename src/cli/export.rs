@@ -13,7 +13,9 @@ use super::bar::{TICK, progress_bar, restyle};
 use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_document;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
-use crate::export::{Frames, JobError, Pattern, Sequence, Video, check_place, write_job};
+use crate::export::{
+    Frames, JobError, LOOP_HINT, Pattern, Sequence, Video, check_place, write_job,
+};
 use crate::image::Format;
 use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
@@ -113,6 +115,9 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         if let Some(remark) = remark {
             report_warning(&remark);
         }
+        if sequence.is_loop() {
+            report_warning(&format!("{}: {LOOP_HINT}", path.display()));
+        }
     }
     if args.dry_run {
         return tell_missing(&sequence);
@@ -156,12 +161,9 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
 fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
     let missing = sequence.missing()?;
     let total = sequence.frames.count();
-    let frames: Vec<String> = missing.iter().map(u64::to_string).collect();
-    let set = Frames::parse(&frames.join(",")).map_or(String::new(), |set| format!(": {set}"));
-    say(&format!(
-        "{} of {total} to make{set}",
-        counted(missing.len(), "frame")
-    ));
+    let count = counted(missing.count(), "frame");
+    let colon = if missing.count() > 0 { ": " } else { "" };
+    say(&format!("{count} of {total} to make{colon}{missing}"));
     Ok(())
 }
 
@@ -213,7 +215,7 @@ impl ProgressReporter {
     }
 
     fn tell(&self, done: Exported) {
-        let so_far = done.kept + done.written;
+        let so_far = done.so_far();
         if so_far > 0 && self.bar.position() == so_far as u64 {
             return;
         }

@@ -40,7 +40,7 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
     let request = RenderRequest::still(&scene);
     let threads = Threads::new(None)?;
     let traced = threads.run(|| render(&scene, &request, &RenderControl::default()));
-    let (image, _) = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
+    let (image, _) = traced.ok_or_else(CliError::no_picture)?;
     let path = free_path(name);
     let (width, height) = (image.width, image.height);
     save_image(&Film::Levels(image), &path)?;

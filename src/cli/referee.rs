@@ -47,7 +47,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         by_povray(&scene, threads.count(), &RenderControl::default()).map_err(CliError::failed)?;
     let request = RenderRequest::still(&scene);
     let ours = threads.run(|| render(&scene, &request, &RenderControl::default()));
-    let (ours, cost) = ours.ok_or_else(|| CliError::failed("the trace ended without a picture"))?;
+    let (ours, cost) = ours.ok_or_else(CliError::no_picture)?;
     let offs = ours.pixels.iter().zip(&theirs.picture.pixels);
     let offs: Vec<[u8; 3]> = offs
         .map(|(a, b)| std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))

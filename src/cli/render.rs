@@ -137,7 +137,7 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
             )
         })
     });
-    let costs = traced.ok_or_else(|| CliError::failed("the trace ended without a picture"))??;
+    let costs = traced.ok_or_else(CliError::no_picture)??;
     let stats = stats((&request, choice), &costs, count);
     match (&args.output, args.stats) {
         (_, true) => say(&serde_json::to_string(&stats)?),
@@ -221,7 +221,7 @@ fn trace(
     (repeat, output): (u32, Option<&Path>),
     control: &RenderControl,
 ) -> Result<Vec<RenderCost>, CliError> {
-    let stopped = |_| CliError::failed("the trace ended without a picture");
+    let stopped = |_| CliError::no_picture();
     let mut costs = Vec::new();
     // They are all the same, and may be large.
     let mut planner = Planner::default();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::edit::Replaced;
-use super::timeline::{MEASURED_AT, Timeline};
+use super::timeline::{Look, MEASURED_AT, Timeline};
 use crate::animate::{CameraPath, Seen, Worst, ends_of, pose, shot, worst_off};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
@@ -159,6 +159,11 @@ impl AnimationState {
         self.timeline.is_playing &= !self.timeline.wants_shot;
         self.timeline.wants_shot = false;
         self.timeline.is_flown = true;
+    }
+
+    /// Looks at what was looked at before a step that is taken back, or done again, on the way to this scene.
+    pub fn look_again(&mut self, before: Look, there: &Scene) {
+        self.timeline.look_again(before, &self.scene, there);
     }
 
     /// Takes up what has changed: the scene, the time, the camera that is looked through.

@@ -12,10 +12,11 @@ use super::edit::Edit;
 use super::fly::Flight;
 use super::history::{History, Snapshot};
 use super::item::Item;
+use super::own_file::OwnFile;
 use super::selection::Selection;
 use super::timeline::{Time, Timeline};
 use crate::animate::CameraPath;
-use crate::files::Stamp;
+use crate::files::{Stamp, absolute};
 use crate::scene::{
     Document, EXAMPLES, Example, MeshSource, Orientation, Scene, SceneError, check_edit,
 };
@@ -36,8 +37,8 @@ pub struct Editor {
     /// The state that the last message about a step was told in.
     pub(super) told_of: u64,
     pub(super) is_dirty: bool,
-    /// Whether its file is not there any more.
-    pub(super) is_gone: bool,
+    /// How its file is, as far as is known.
+    pub(super) own_file: OwnFile,
     /// Mesh files that other programs have written since the document was opened, as they are now.
     pub(super) reread: Vec<MeshSource>,
     /// Mesh files that were read, and hold something else now that cannot be.
@@ -78,7 +79,7 @@ impl Editor {
             documents: 0,
             told_of: 0,
             is_dirty: false,
-            is_gone: false,
+            own_file: OwnFile::Whole,
             reread: Vec::new(),
             broken: BTreeSet::new(),
             history: History::default(),
@@ -138,7 +139,7 @@ impl Editor {
 
     /// Whether there are changes that no file has.
     pub fn is_dirty(&self) -> bool {
-        self.is_dirty || self.is_gone || self.is_making_keys() || self.has_broken_meshes()
+        self.is_dirty || self.has_lost_files() || self.is_making_keys()
     }
 
     /// What the document is called: its file name, that of its example, or `untitled`.
@@ -193,6 +194,13 @@ impl Editor {
     /// The angles of the camera, from its vectors.
     pub fn orientation(&self) -> Orientation {
         self.flight.orientation(&self.shown().camera)
+    }
+
+    /// Does what was asked for. Whether the scene is another one since: it may be refused, with a reason of its own.
+    pub fn changes(&mut self, action: Action) -> bool {
+        let before = self.revision;
+        self.apply(action);
+        self.revision != before
     }
 
     /// Does what a panel asked for.
@@ -285,7 +293,7 @@ impl Editor {
         self.path = Some(path.clone());
         self.stamp = Some(stamp);
         self.saved = Arc::clone(&self.scene);
-        (self.is_dirty, self.is_gone) = (false, false);
+        (self.is_dirty, self.own_file) = (false, OwnFile::Whole);
         let kept = backup.map_or(String::new(), |backup| {
             format!(
                 "; the file that was there had other comments, and is kept as {}",
@@ -348,7 +356,7 @@ impl Editor {
 
     /// Makes a change. Whether it was; what changes nothing was, too.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
-        let label = edit.label(&self.scene);
+        let (label, before) = (edit.label(&self.scene), self.here());
         let is_camera = edit.moves_view();
         // What moves the joined things is taken along by it.
         let joined = edit.joined().to_vec();
@@ -379,9 +387,7 @@ impl Editor {
         if is_keyed {
             self.animation_state.pause(&next.animation);
         }
-        let lost = is_less.then(|| self.lost(&joined, &next)).flatten();
-        let lost = lost.map(|lost| format!("{label}: {lost}"));
-        let before = self.here();
+        let lost = is_less.then(|| self.lost(&label, &joined, &next)).flatten();
         self.history.record(label, before, &next);
         self.selection = if new.is_empty() {
             self.followed(&next)
@@ -406,10 +412,12 @@ impl Editor {
         Snapshot {
             scene: Arc::clone(&self.scene),
             selection: self.selection.clone(),
+            look: self.timeline().look(),
         }
     }
 
     fn return_to(&mut self, there: Snapshot) {
+        self.animation_state.look_again(there.look, &there.scene);
         self.selection = there.selection;
         self.set_scene(self.refreshed(&there.scene));
     }
@@ -436,14 +444,7 @@ impl Editor {
         self.revision += 1;
         let selection = std::mem::take(&mut self.selection);
         self.select(selection);
-        if self.mode == Mode::HighRes {
-            self.mode = Mode::Live;
-        }
+        self.leave_still();
         self.animation_state.update(&self.scene);
     }
-}
-
-/// The path that means the same file wherever the program works next.
-fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }

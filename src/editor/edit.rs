@@ -172,15 +172,28 @@ impl Edit {
     /// Shows or hides an item of what is on show, if it can be hidden.
     pub fn visible(scene: &Scene, item: Item, visible: bool) -> Option<Self> {
         let field = if visible { "show" } else { "hide" };
-        let index = item.index;
-        match item.kind {
-            Kind::Light => {
-                let light = scene.lights.get(index)?.clone();
-                Some(Self::Light(index, Light { visible, ..light }, field))
-            }
+        let to_object = |object: &mut Object| object.visible = visible;
+        let to_light = |light: &mut Light| light.visible = visible;
+        Self::of_item(scene, item, field, (to_object, to_light))
+    }
+
+    /// The change of an item that does this to an object, and this to a light; `None` for packs.
+    pub fn of_item(
+        scene: &Scene,
+        Item { kind, index }: Item,
+        field: &'static str,
+        (to_object, to_light): (impl FnOnce(&mut Object), impl FnOnce(&mut Light)),
+    ) -> Option<Self> {
+        match kind {
             Kind::Object => {
-                let object = scene.objects.get(index)?.clone();
-                Some(Self::object(index, Object { visible, ..object }, field))
+                let mut object = scene.objects.get(index)?.clone();
+                to_object(&mut object);
+                Some(Self::object(index, object, field))
+            }
+            Kind::Light => {
+                let mut light = scene.lights.get(index)?.clone();
+                to_light(&mut light);
+                Some(Self::Light(index, light, field))
             }
             Kind::Pack => None,
         }

@@ -90,7 +90,7 @@ impl Editor {
     }
 
     /// A still picture is of another time.
-    fn leave_still(&mut self) {
+    pub(super) fn leave_still(&mut self) {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
@@ -118,6 +118,11 @@ impl Editor {
     /// Whether the scene changes from frame to frame of the window.
     pub fn is_moving(&self) -> bool {
         self.is_in_gesture() || self.timeline().is_playing
+    }
+
+    /// Whether a flight is being recorded, or about to become keys.
+    pub fn is_recording(&self) -> bool {
+        self.timeline().recorded().is_some() || self.is_making_keys()
     }
 
     /// Whether a recorded flight is about to become keys.
@@ -216,8 +221,8 @@ impl Editor {
         let worst = timeline.worst.map_or(0.0, |worst| worst.off);
         let jumps = match timeline.jumps {
             0 => String::new(),
-            1 => "; the mouse jumped once".to_owned(),
-            jumps => format!("; the mouse jumped {jumps} times"),
+            1 => "; the view jumped once".to_owned(),
+            jumps => format!("; the view jumped {jumps} times"),
         };
         let tolerance = timeline.tolerance;
         self.animation_state.note_made(tolerance, keys.clone());

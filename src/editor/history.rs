@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::selection::Selection;
+use super::timeline::Look;
 use crate::scene::Scene;
 
 /// Steps that can be taken back; older ones are forgotten.
@@ -18,6 +19,8 @@ pub struct Snapshot {
     pub scene: Arc<Scene>,
     /// What was selected.
     pub selection: Selection,
+    /// What was looked at.
+    pub look: Look,
 }
 
 /// A step that was done, or taken back.
@@ -166,6 +169,7 @@ mod tests {
         Snapshot {
             scene: Arc::new(scene.clone()),
             selection: Selection::default(),
+            look: Look::default(),
         }
     }
 

@@ -76,6 +76,21 @@ impl Item {
         lights.chain(objects.map(|(index, _)| Self::object(index)))
     }
 
+    /// The pack of an object or of a light's marker, or the one it is, by its name.
+    pub fn color_pack(self, scene: &Scene) -> Option<&str> {
+        match self.kind {
+            Kind::Light => {
+                let marker = scene.lights.get(self.index)?.marker.as_ref();
+                marker.map(|marker| marker.color_pack.as_str())
+            }
+            Kind::Object => {
+                let object = scene.objects.get(self.index);
+                object.map(|object| object.color_pack.as_str())
+            }
+            Kind::Pack => self.name(scene),
+        }
+    }
+
     /// Whether it shines, or is visible; `None` for packs, and where there is none.
     pub fn is_visible(self, scene: &Scene) -> Option<bool> {
         match self.kind {

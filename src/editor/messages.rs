@@ -99,14 +99,14 @@ impl Editor {
         self.begin(BROKEN);
     }
 
-    /// What is not there any more after things were deleted, or these objects joined or taken apart.
-    pub(super) fn lost(&self, joined: &[usize], next: &Scene) -> Option<String> {
+    /// What is not there any more after a step of this name: things were deleted, or these objects joined or taken apart.
+    pub(super) fn lost(&self, label: &str, joined: &[usize], next: &Scene) -> Option<String> {
         let lost: Vec<String> = self
             .lost_keys(next)
             .into_iter()
             .chain(self.lost_looks(joined))
             .collect();
-        (!lost.is_empty()).then(|| lost.join("; "))
+        (!lost.is_empty()).then(|| format!("{label}: {}", lost.join("; ")))
     }
 
     fn lost_keys(&self, next: &Scene) -> Option<String> {

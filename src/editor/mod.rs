@@ -18,13 +18,15 @@ mod edit;
 
 mod fly;
 
-mod history;
-
 mod timeline;
+
+mod history;
 
 mod action;
 
 mod animation_state;
+
+mod own_file;
 
 mod document;
 
@@ -44,6 +46,7 @@ pub use fly::Motion;
 pub use item::{Item, Kind};
 pub use messages::replaced_flight;
 pub use names::{free_bookmark_name, free_group_name};
+pub use own_file::OwnFile;
 pub use selection::Selection;
 pub use timeline::{MEASURED_AT, Repeat, Time, Timeline};
 

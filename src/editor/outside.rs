@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::document::Editor;
+use super::own_file::OwnFile;
 use crate::files::{Stamp, is_same_file};
 use crate::scene::{Document, Leftover, MeshSource, Scene};
 
@@ -18,14 +19,14 @@ impl Editor {
         self.is_dirty = true;
     }
 
-    /// Whether the document's file is not there any more, as far as is known.
-    pub fn is_gone(&self) -> bool {
-        self.is_gone
+    /// How the document's file is, as far as is known.
+    pub fn own_file(&self) -> OwnFile {
+        self.own_file
     }
 
-    /// Whether it is: what no file has counts as unsaved.
-    pub fn set_gone(&mut self, is_gone: bool) {
-        self.is_gone = is_gone;
+    /// How it is: what no file has counts as unsaved.
+    pub fn set_own_file(&mut self, own_file: OwnFile) {
+        self.own_file = own_file;
     }
 
     /// Whether another program has written the document's file since this window read or wrote it.
@@ -50,7 +51,7 @@ impl Editor {
         let before = self.here();
         let theirs = Arc::new(document.scene);
         self.header = document.header;
-        self.stamp = Some(stamp);
+        (self.stamp, self.own_file) = (Some(stamp), OwnFile::Whole);
         self.saved = Arc::clone(&theirs);
         if theirs == self.scene {
             // Other words for the same.
@@ -116,9 +117,10 @@ impl Editor {
         self.tell_missing_meshes();
     }
 
-    /// Whether a mesh is shown whose file holds something else now that cannot be read: the document alone has it.
-    pub(super) fn has_broken_meshes(&self) -> bool {
-        !self.scene.shown_of(&self.broken).is_empty()
+    /// Whether the document alone has what was in a file: its own is not there any more, or it or that of a mesh that is
+    /// shown holds something else now that cannot be read.
+    pub(super) fn has_lost_files(&self) -> bool {
+        self.own_file != OwnFile::Whole || !self.scene.shown_of(&self.broken).is_empty()
     }
 
     fn note_broken_mesh(&mut self, full: PathBuf, why: &str) {
@@ -166,14 +168,14 @@ impl Editor {
         new.map_or_else(|| Arc::clone(scene), Arc::new)
     }
 
-    /// Keeps the scene beside what another program has written, if it can be read; the next save replaces
-    /// that.
-    pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>) {
-        let (theirs, stamp) = theirs.map_or((None, None), |(theirs, stamp)| {
+    /// Keeps the scene beside what another program has written; the next save replaces that. What cannot be read of it
+    /// has a stamp all the same.
+    pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>, unread: Option<Stamp>) {
+        let (theirs, stamp) = theirs.map_or((None, unread), |(theirs, stamp)| {
             (Some(Arc::new(theirs.scene)), Some(stamp))
         });
         self.is_dirty = theirs.as_ref() != Some(&self.scene);
         self.saved = theirs.unwrap_or_else(|| Arc::clone(&self.saved));
-        self.stamp = stamp;
+        (self.stamp, self.own_file) = (stamp, OwnFile::Whole);
     }
 }

@@ -15,7 +15,7 @@ pub enum Selection {
     Camera,
     /// Ambient intensity, background, light visualization.
     World,
-    /// The still picture's size and reflections.
+    /// The size of the still picture, and how it is traced.
     Render,
     /// Items, at least one: the one that was selected last comes last.
     Items(Vec<Item>),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::animate::{Seen, Worst};
-use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Take};
+use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Scene, Take};
 
 /// The picture that a deviation is told for, in pixels.
 pub const MEASURED_AT: f64 = 1024.0;
@@ -69,7 +69,7 @@ pub struct Timeline {
     pub tolerance: f64,
     /// Where the keys are off the recording the most, in the same pixels; `None` without one.
     pub worst: Option<Worst>,
-    /// How often the mouse jumped in the flight that was made into keys last.
+    /// How often the view jumped in the flight that was made into keys last.
     pub jumps: usize,
     /// Whether the keys are others than were made of the recording.
     pub is_edited: bool,
@@ -79,6 +79,15 @@ pub struct Timeline {
     pub(super) is_flown: bool,
     is_returning: bool,
     pub(super) recording: Option<Recording>,
+}
+
+/// What is looked at, and when.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Look {
+    wants_shot: bool,
+    is_flown: bool,
+    /// Seconds from the start.
+    playhead: f64,
 }
 
 /// A flight that is being recorded.
@@ -113,6 +122,30 @@ impl Timeline {
     /// Whether the picture is that of the shot camera.
     pub fn looks_through(&self, animation: &Animation) -> bool {
         self.wants_shot && !animation.keys.is_empty()
+    }
+
+    pub(super) fn look(&self) -> Look {
+        Look {
+            wants_shot: self.wants_shot,
+            is_flown: self.is_flown,
+            playhead: self.playhead,
+        }
+    }
+
+    /// Looks at what was looked at before a step that is taken back, or done again, if that has moved the view, or the
+    /// times of keys, from `here` to `there`.
+    pub(super) fn look_again(&mut self, before: Look, here: &Scene, there: &Scene) {
+        if here.camera != there.camera {
+            (self.wants_shot, self.is_flown) = (before.wants_shot, before.is_flown);
+        }
+        let [here, there] = [here, there].map(|scene| &scene.animation.keys[..]);
+        let is_same_way =
+            here.len() == there.len() && here.iter().zip(there).all(|(a, b)| a.value == b.value);
+        // As long or short as it was before, all but its start comes at other times.
+        let mut later = here.iter().zip(there).skip(1);
+        if is_same_way && here.len() > 1 && later.all(|(a, b)| a.time != b.time) {
+            self.playhead = before.playhead;
+        }
     }
 
     /// Samples recorded so far, and their seconds; `None` while nothing is recorded.
@@ -164,10 +197,15 @@ impl Timeline {
         if !self.is_playing {
             return;
         }
+        if let Some((_, recorded)) = self.recorded() {
+            // What is seen meanwhile is what is seen when that is played: it does not begin again.
+            self.playhead = recorded;
+            return;
+        }
         let step = seconds * self.speed;
         let duration = animation.duration();
         match self.repeat {
-            _ if duration <= 0.0 => (self.playhead, self.is_playing) = (0.0, false),
+            _ if duration <= 0.0 => self.is_playing = false,
             Repeat::Once => {
                 self.playhead += step;
                 if self.playhead >= duration {
@@ -207,6 +245,8 @@ impl Timeline {
         self.is_playing = is_playing;
         if !is_playing {
             self.playhead = self.shown_time(animation);
+        } else if let Some((_, seconds)) = self.recorded() {
+            self.playhead = seconds;
         } else if self.repeat == Repeat::Once
             && animation.frame_at(self.playhead) >= animation.frame_count()
         {

@@ -38,6 +38,13 @@ pub struct Exported {
     pub written: usize,
 }
 
+impl Exported {
+    /// Frames that are there by now.
+    pub fn so_far(&self) -> usize {
+        self.kept + self.written
+    }
+}
+
 /// How a step ended.
 #[derive(Debug)]
 pub enum ExportStep {

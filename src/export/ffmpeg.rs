@@ -12,6 +12,7 @@ use super::error::{VideoError, last_lines};
 use super::frame_file::{as_it_is, as_ppm};
 use super::program::end_of;
 use super::sequence::Sequence;
+use crate::files::absolute;
 use crate::image::Format;
 use crate::words::for_shell;
 
@@ -130,7 +131,6 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         return None;
     }
     // What a name may begin with or have in it means something else to ffmpeg.
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let fps = sequence.frames_per_second();
     let codec: Vec<String> = codec.split(' ').map(for_shell).collect();
     let output = for_shell(&absolute(path).display().to_string());

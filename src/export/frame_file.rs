@@ -75,12 +75,7 @@ fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), 
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
 pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
-    let frame = read(sequence, frame)?;
-    let image = Image {
-        width: frame.width() as usize,
-        height: frame.height() as usize,
-        pixels: frame.pixels().map(|pixel| pixel.0).collect(),
-    };
+    let image = Image::from(&read(sequence, frame)?);
     let mut bytes = Cursor::new(Vec::new());
     let encoded = image.encode(Format::Ppm, &mut bytes);
     encoded.map_err(|source| VideoError::unreadable(&path, source))?;

@@ -79,6 +79,20 @@ impl Frames {
         self.0.iter().copied()
     }
 
+    /// Those that are not of a kind; none may be left.
+    ///
+    /// # Errors
+    /// Where one is not known to be.
+    pub fn without<E>(&self, is_so: impl Fn(u64) -> Result<bool, E>) -> Result<Self, E> {
+        let mut others = Vec::new();
+        for frame in self.iter() {
+            if !is_so(frame)? {
+                others.push(frame);
+            }
+        }
+        Ok(Self(others))
+    }
+
     /// Whether they are equally far apart.
     pub fn are_even(&self) -> bool {
         let mut apart = self.0.windows(2).map(|pair| pair[1] - pair[0]);

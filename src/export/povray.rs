@@ -369,11 +369,7 @@ pub fn by_povray(
     let (time, rays) = statistics(&String::from_utf8_lossy(&said)).ok_or_else(failed)?;
     let picture = image::open(folder.join("scene.png"))?.to_rgba8();
     Ok(ByPovray {
-        picture: Image {
-            width: width as usize,
-            height: height as usize,
-            pixels: picture.pixels().map(|pixel| pixel.0).collect(),
-        },
+        picture: Image::from(&picture),
         time,
         rays,
     })

@@ -24,6 +24,10 @@ use crate::words::counted;
 /// video: memory stays bounded, however large they are and however many threads there are.
 const MOST_PIXELS: usize = 1 << 26;
 
+/// What is said of a video of a [`Sequence`] that is a loop.
+pub const LOOP_HINT: &str =
+    "its last frame is the first again: it loops without a stop if that is left out";
+
 /// What is exported, and where to.
 #[derive(Clone, Debug)]
 pub struct Sequence {
@@ -135,15 +139,9 @@ impl Sequence {
     ///
     /// # Errors
     /// [`ExportError`], if the folder's notes cannot be read.
-    pub fn missing(&self) -> Result<Vec<u64>, ExportError> {
+    pub fn missing(&self) -> Result<Frames, ExportError> {
         let manifest = self.manifest()?;
-        let mut missing = Vec::new();
-        for frame in self.frames.iter() {
-            if !self.is_valid(&manifest, frame)? {
-                missing.push(frame);
-            }
-        }
-        Ok(missing)
+        self.frames.without(|frame| self.is_valid(&manifest, frame))
     }
 
     /// Makes the folder if it is not there, and removes what killed programs have left unfinished there.

@@ -1,5 +1,7 @@
 //! The picture: 8-bit pixels, and what light becomes in them.
 
+use image::RgbaImage;
+
 use crate::simd::Real;
 use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
@@ -72,6 +74,16 @@ impl Image {
             width: self.width,
             height: self.height,
             pixels: pixels.map(|&[r, g, b, _]| [r, g, b].map(share)).collect(),
+        }
+    }
+}
+
+impl From<&RgbaImage> for Image {
+    fn from(decoded: &RgbaImage) -> Self {
+        Self {
+            width: decoded.width() as usize,
+            height: decoded.height() as usize,
+            pixels: decoded.pixels().map(|pixel| pixel.0).collect(),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! What a way of tracing does, where it comes from, and what that costs and gives here: two sentences.
 
 use super::candidates::{Candidate, Family, UNCULLED};
-use super::look::capitalised;
 use super::study::{Measurement, Study};
 use crate::scene::{Chosen, SphereMethod};
+use crate::words::capitalised;
 
 /// Ratios closer to one than this are none.
 const ALIKE: f64 = 0.05;

@@ -13,6 +13,29 @@ const SAME_RAYS: f64 = 0.02;
 /// Times that differ by less are equal, however little the runs differ.
 const SAME_TIME: f64 = 0.08;
 
+impl Study {
+    /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
+    pub fn costs(&self) -> Vec<(f64, f64)> {
+        let cost = |dot: &Measurement| dot.timing().map_or(f64::NAN, |timing| timing.median);
+        let error = |dot: &Measurement| dot.metrics.map_or(f64::NAN, |metrics| metrics.rmse);
+        self.measurements
+            .iter()
+            .map(|dot| (cost(dot), error(dot)))
+            .collect()
+    }
+
+    /// The same, without the times of those that are doubtful: they carry no front.
+    pub fn certain_costs(&self) -> Vec<(f64, f64)> {
+        let mut costs = self.costs();
+        for (cost, dot) in costs.iter_mut().zip(&self.measurements) {
+            if dot.is_doubtful() {
+                cost.0 = f64::NAN;
+            }
+        }
+        costs
+    }
+}
+
 /// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
 /// each do, nor in the rays that they take; certain ones and doubtful ones apart. The first of a group is the first of
 /// the list. What is not fully measured is in no group.
@@ -48,7 +71,7 @@ pub fn front_of(study: &Study) -> Vec<usize> {
 }
 
 /// Milliseconds and RMSE of the first way of each dot; NaN for the others, and where they are doubtful.
-pub fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
+fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     let all = study.certain_costs();
     let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
     for cluster in clusters(study) {

@@ -1,10 +1,18 @@
 //! What can be drawn of what was measured.
 
 use super::growth::Growth;
-use super::look::PictureLook;
 use super::scaling::SharedPicture;
 use super::stability::Map;
 use super::study::Study;
+
+/// How a picture of a chart looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureLook {
+    /// Whether it is light.
+    pub is_light: bool,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+}
 
 /// A picture of measurements that is to be drawn.
 #[derive(Debug)]

@@ -298,10 +298,10 @@ fn mesh(faces: u32) -> Scene {
             let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
             // Clockwise seen from outside.
             if ring > 0 {
-                all.push([a, b, c]);
+                all.push([a, c, b]);
             }
             if ring + 1 < rings {
-                all.push([a, c, d]);
+                all.push([a, d, c]);
             }
         }
     }

@@ -129,10 +129,9 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
     if !is_same {
         return None;
     }
-    let all = image::open(&pictures).ok()?.to_rgba8();
+    let all = Image::from(&image::open(&pictures).ok()?.to_rgba8());
     let (width, height) = (kept.width as usize, kept.height as usize);
-    let pixels: Vec<[u8; 4]> = all.pixels().map(|pixel| pixel.0).collect();
-    let mut images = pixels.chunks_exact(width * height).map(|pixels| {
+    let mut images = all.pixels.chunks_exact(width * height).map(|pixels| {
         Arc::new(Image {
             width,
             height,

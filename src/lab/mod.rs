@@ -3,8 +3,6 @@
 //! A new way is a line in a list of [`crate::scene::Method`] or in `candidates.rs`; measuring, chart
 //! and tests pick it up.
 
-mod look;
-
 mod candidates;
 
 mod measure;
@@ -37,13 +35,12 @@ mod figure;
 
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
-pub use clusters::{clusters, costs_of_choices, costs_of_dots};
+pub use clusters::{clusters, costs_of_choices};
 pub use explain::{Lit, Share, Sight, drawn, explain, first_met, meet};
-pub use figure::Figure;
+pub use figure::{Figure, PictureLook};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};
 pub use kept::{keep, kept};
-pub use look::{PictureLook, capitalised};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, mean, trace_light};
 pub use pareto_front::{cheapest_within, closest_within, front};
 pub use quality::{Choice, Goal, choose};

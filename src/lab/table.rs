@@ -5,30 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::clusters::front_of;
-use super::study::{Measurement, REFERENCE_SAMPLES, Study};
-
-impl Study {
-    /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
-    pub fn costs(&self) -> Vec<(f64, f64)> {
-        let cost = |dot: &Measurement| dot.timing().map_or(f64::NAN, |timing| timing.median);
-        let error = |dot: &Measurement| dot.metrics.map_or(f64::NAN, |metrics| metrics.rmse);
-        self.measurements
-            .iter()
-            .map(|dot| (cost(dot), error(dot)))
-            .collect()
-    }
-
-    /// The same, without the times of those that are doubtful: they carry no front.
-    pub fn certain_costs(&self) -> Vec<(f64, f64)> {
-        let mut costs = self.costs();
-        for (cost, dot) in costs.iter_mut().zip(&self.measurements) {
-            if dot.is_doubtful() {
-                cost.0 = f64::NAN;
-            }
-        }
-        costs
-    }
-}
+use super::study::{REFERENCE_SAMPLES, Study};
 
 /// The dots by time, for people; those on the front are marked.
 pub fn table(study: &Study) -> String {

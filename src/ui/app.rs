@@ -36,6 +36,8 @@ use crate::image::Image;
 use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
+/// What is said where a picture that is being written keeps the window open.
+const CLOSING: &str = "Glint closes when the picture is written; Cancel gives it up";
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
 /// Where it is kept which panels are shown.
@@ -223,8 +225,7 @@ impl App {
             Some(FileOutcome::AskToQuit | FileOutcome::Quit) => {
                 self.closing = Some(self.editor.revision());
                 if self.pictures.worker().is_saving() {
-                    self.editor
-                        .notify("Glint closes when the picture is written".to_owned());
+                    self.editor.notify(CLOSING.to_owned());
                 }
                 ctx.request_repaint();
             }
@@ -298,7 +299,11 @@ impl eframe::App for App {
         self.act_on(ctx, outcome);
         self.take_dropped(ctx);
         let is_closing = ctx.input(|input| input.viewport().close_requested());
-        if is_closing && self.closing.is_none() {
+        if is_closing && self.closing.is_some() && self.pictures.worker().is_saving() {
+            // A second click does not end what the first one waits for.
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.editor.notify(CLOSING.to_owned());
+        } else if is_closing && self.closing.is_none() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
             self.act_on(ctx, outcome);

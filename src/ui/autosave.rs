@@ -1,6 +1,6 @@
 //! Keeping unsaved work safe while the program runs, and taking it up after one that crashed.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -16,15 +16,23 @@ const INTERVAL: Duration = Duration::from_secs(5);
 /// Time between two looks at whether it is written.
 const POLL: Duration = Duration::from_millis(100);
 
+/// What messages are about that tell why it does not succeed.
+const AUTOSAVE: &str = "Autosave";
+
 /// The state of autosaving.
 #[derive(Default)]
 pub struct Autosave {
+    /// Where work is kept; `None` keeps none.
+    folder: Option<PathBuf>,
+    /// The own place there, once there is one.
     recovery: Option<Arc<Recovery>>,
     /// What is kept: revision, and since when.
     kept: Option<(u64, Instant)>,
     /// What is being written: the revision, or why it could not be.
     writing: Background<Result<u64, String>>,
     tried: Option<Instant>,
+    /// Why nothing could be kept, as it was told.
+    why: Option<String>,
     /// The document that was looked for work of that a crashed program left, see [`Editor::documents`].
     looked_for: u64,
 }
@@ -34,6 +42,7 @@ impl Autosave {
     pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
         let recovery = folder.and_then(|folder| Recovery::new(folder).ok().map(Arc::new));
         let mut autosave = Self {
+            folder: folder.map(Path::to_owned),
             recovery,
             ..Self::default()
         };
@@ -48,10 +57,14 @@ impl Autosave {
         if let Some(leftover) = leftover {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
+            let discard = path.map_or(
+                "New in the File menu discards them",
+                |_| "open the file again to discard them",
+            );
             editor.recover(leftover);
             self.kept = Some((editor.revision(), Instant::now()));
             editor.notify(format!(
-                "Glint ended with unsaved changes to {name}; here they are. Save them, or open the file again to discard them."
+                "Glint ended with unsaved changes to {name}; here they are. Save them, or {discard}."
             ));
         }
         self.looked_for = editor.documents();
@@ -66,7 +79,7 @@ impl Autosave {
     /// to write than a frame: a thread of its own does it.
     pub fn tick(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(recovery) = self.recovery.clone() else {
-            return;
+            return self.take_place(ctx, editor);
         };
         // What is still written may be of the document before, whose file it would take up.
         if self.looked_for != editor.documents() && !self.writing.is_awaited() {
@@ -85,17 +98,15 @@ impl Autosave {
             if self.kept.take().is_some() {
                 recovery.clear();
             }
-            return;
+            return self.tell(editor, None);
         }
         let revision = editor.revision();
         if self.kept.is_some_and(|(kept, _)| kept == revision) {
             return;
         }
-        if let Some(wait) = self.tried.and_then(|at| INTERVAL.checked_sub(at.elapsed())) {
-            ctx.request_repaint_after(wait);
+        if !self.may_try(ctx) {
             return;
         }
-        self.tried = Some(Instant::now());
         let document = editor.document_to_keep();
         let (path, stamp) = (editor.path().map(Path::to_owned), editor.stamp().cloned());
         self.writing = Background::start("glint-autosave", move || {
@@ -113,11 +124,58 @@ impl Autosave {
             return;
         };
         match written.unwrap_or_else(|no_answer| Err(no_answer.to_string())) {
-            Ok(revision) => self.kept = Some((revision, Instant::now())),
-            Err(error) => editor.report_error(format!(
-                "Unsaved changes cannot be kept safe: {error}. Save your work and make room on the disk."
-            )),
+            Ok(revision) => {
+                self.kept = Some((revision, Instant::now()));
+                self.tell(editor, None);
+            }
+            Err(error) => self.tell(editor, Some(error)),
         }
+    }
+
+    /// Looks for a place once more, if there was none when the program began.
+    fn take_place(&mut self, ctx: &Context, editor: &mut Editor) {
+        let Some(folder) = self.folder.clone() else {
+            return;
+        };
+        if !editor.is_dirty() {
+            return self.tell(editor, None);
+        }
+        if !self.may_try(ctx) {
+            return;
+        }
+        match Recovery::new(&folder) {
+            Ok(place) => {
+                (self.recovery, self.tried) = (Some(Arc::new(place)), None);
+                self.tell(editor, None);
+                ctx.request_repaint();
+            }
+            Err(error) => self.tell(editor, Some(error.to_string())),
+        }
+    }
+
+    /// Whether the last try is so long ago that there may be another, which counts from now on.
+    fn may_try(&mut self, ctx: &Context) -> bool {
+        if let Some(wait) = self.tried.and_then(|at| INTERVAL.checked_sub(at.elapsed())) {
+            ctx.request_repaint_after(wait);
+            return false;
+        }
+        self.tried = Some(Instant::now());
+        true
+    }
+
+    /// Tells why work cannot be kept, as long as that is so.
+    fn tell(&mut self, editor: &mut Editor, why: Option<String>) {
+        if self.why == why {
+            return;
+        }
+        editor.begin(AUTOSAVE);
+        if let Some(why) = &why {
+            editor.report_error_in(
+                AUTOSAVE,
+                format!("Unsaved changes cannot be kept safe: {why}. Save your work."),
+            );
+        }
+        self.why = why;
     }
 
     /// The program ends as the user wished: there is nothing to recover.
@@ -127,5 +185,37 @@ impl Autosave {
         if let Some(recovery) = &self.recovery {
             recovery.clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::{Action, Edit};
+
+    #[test]
+    fn that_there_is_no_place_is_told_as_long_as_that_is_so() {
+        let (ctx, folder) = (Context::default(), tempfile::tempdir().expect("a folder"));
+        let place = folder.path().join("data");
+        std::fs::write(&place, "no folder").expect("written");
+        let mut editor = Editor::demo();
+        let mut autosave = Autosave::start(Some(&place), &mut editor);
+        autosave.tick(&ctx, &mut editor);
+        assert_eq!(
+            editor.take_error(AUTOSAVE),
+            None,
+            "there is nothing to keep"
+        );
+        editor.apply(Action::Edit(Edit::Ambient(0.1)));
+        autosave.tick(&ctx, &mut editor);
+        assert!(editor.take_error(AUTOSAVE).is_some());
+        editor.apply(Action::Undo);
+        autosave.tick(&ctx, &mut editor);
+        assert_eq!(autosave.why, None);
+        editor.apply(Action::Redo);
+        std::fs::remove_file(&place).expect("removed");
+        autosave.tried = None;
+        autosave.tick(&ctx, &mut editor);
+        assert!(autosave.recovery.is_some() && autosave.why.is_none());
     }
 }

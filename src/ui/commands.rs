@@ -298,12 +298,17 @@ pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Theme(Theme::Light), "Light theme"),
 ];
 
+/// Every command without a choice in it: what it does, and the keys for it.
+pub fn all() -> impl Iterator<Item = (&'static Command, &'static str, Option<KeyboardShortcut>)> {
+    let keyed = SHORTCUTS.iter();
+    let keyed = keyed.map(|keyed| (&keyed.command, keyed.what, keyed.keys.first().copied()));
+    let keyless = KEYLESS.iter();
+    keyed.chain(keyless.map(|(command, what)| (command, *what, None)))
+}
+
 /// What a command does, in words.
 pub fn what_of(command: &Command) -> Option<&'static str> {
-    let keyed = SHORTCUTS.iter().map(|keyed| (&keyed.command, keyed.what));
-    let keyless = KEYLESS.iter().map(|(command, what)| (command, *what));
-    let mut all = keyed.chain(keyless);
-    all.find_map(|(other, what)| (other == command).then_some(what))
+    all().find_map(|(other, what, _)| (other == command).then_some(what))
 }
 
 /// The commands whose keys were pressed in this frame. A key that repeats because it is held
@@ -357,6 +362,11 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
         });
     });
     pressed
+}
+
+/// Whether Escape gives up what is being dragged, whatever keys are held for it; it means nothing else then.
+pub fn take_escape(ui: &Ui) -> bool {
+    ui.input_mut(|input| input.consume_key(input.modifiers, Key::Escape))
 }
 
 /// The first key of a command, as menus show it.

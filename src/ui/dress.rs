@@ -3,6 +3,7 @@
 use egui::Response;
 
 use crate::editor::{Edit, Editor, Item, Kind};
+use crate::scene::{Light, Object};
 
 /// The pack that was dropped on a widget.
 pub fn dropped_pack(response: &Response) -> Option<Item> {
@@ -23,18 +24,15 @@ pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     } else {
         &one
     };
-    let edits = items.iter().filter_map(|item| match item.kind {
-        Kind::Object => {
-            let mut object = scene.objects.get(item.index)?.clone();
-            name.clone_into(&mut object.color_pack);
-            Some(Edit::object(item.index, object, "color pack"))
-        }
-        Kind::Light => {
-            let mut light = scene.lights.get(item.index)?.clone();
-            name.clone_into(&mut light.marker.as_mut()?.color_pack);
-            Some(Edit::Light(item.index, light, "color pack"))
-        }
-        Kind::Pack => None,
+    let wearers = items.iter().filter(|item| item.color_pack(scene).is_some());
+    let edits = wearers.filter_map(|item| {
+        let to_object = |object: &mut Object| name.clone_into(&mut object.color_pack);
+        let to_light = |light: &mut Light| {
+            if let Some(marker) = &mut light.marker {
+                name.clone_into(&mut marker.color_pack);
+            }
+        };
+        Edit::of_item(scene, *item, "color pack", (to_object, to_light))
     });
     let edits: Vec<Edit> = edits.collect();
     (!edits.is_empty()).then(|| Edit::Each(edits, format!("Wear {name}")))

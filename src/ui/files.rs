@@ -11,11 +11,11 @@ use super::commands::Next;
 use super::dialogs::{Ask, Dialogs};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
-use super::outside::{OUTSIDE, Theirs, Watch};
+use super::outside::{OUTSIDE, Theirs, Watch, forget_lost, tell_lost};
 use super::prompts::{PathPrompt, Reply, ask_about_changes, ask_to_quit};
 use super::reading::{Read, Reading};
-use super::wishes::{Answered, FileOutcome, PathRequest, Waiting};
-use crate::editor::{Action, Editor, Time};
+use super::wishes::{Answered, FileOutcome, PathRequest, Prompt, Waiting};
+use crate::editor::{Action, Editor, OwnFile, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
@@ -36,17 +36,6 @@ pub struct Files {
     pub recent: Vec<PathBuf>,
     /// Where paths were chosen before.
     pub folders: Folders,
-}
-
-/// A question over the window.
-enum Prompt {
-    Unsaved(Next),
-    /// The answer was to save: as soon as a recorded flight has become keys.
-    Saving(Next),
-    Quit,
-    Path(PathRequest, PathPrompt),
-    /// Another program has written the file; the wish is to save, if it is one.
-    Outside(Box<Theirs>, Option<PathRequest>),
 }
 
 impl Files {
@@ -148,10 +137,12 @@ impl Files {
         if ctx.input(|input| input.pointer.any_down()) || editor.is_in_gesture() {
             return None;
         }
-        if !self.reading.is_empty() && self.is_free() {
+        // Nothing pulls the camera from a flight that is recorded either.
+        let is_free = self.is_free() && !editor.is_recording();
+        if !self.reading.is_empty() && is_free {
             ctx.request_repaint_after(AT_ONCE);
             self.take_read(ctx, editor, Duration::ZERO);
-        } else if self.is_free() && self.watch.is_due(ctx, editor) {
+        } else if is_free && self.watch.is_due(ctx, editor) {
             self.look_outside(editor);
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
@@ -291,14 +282,13 @@ impl Files {
         let is_gone = self.watch.note_gone(editor, &path);
         let (is_news, broken) = (self.watch.is_news(&path), self.watch.take_broken());
         if let Some(why) = broken.filter(|_| !is_news) {
-            editor.report_error_in(OUTSIDE, why);
+            tell_lost(editor, OwnFile::Broken, why);
         }
         if !is_news || is_gone {
             return;
         }
         if !editor.is_changed_outside() {
-            // If something was wrong with it, that is over.
-            return editor.begin(OUTSIDE);
+            return forget_lost(editor);
         }
         // What cannot be read may be half written: when more is, the next look tells, or the next save.
         let theirs = match Document::load_stamped(&path) {
@@ -316,7 +306,9 @@ impl Files {
         theirs: Result<(Document, Stamp), SceneError>,
         wish: Option<PathRequest>,
     ) -> bool {
-        editor.begin(OUTSIDE);
+        if theirs.is_ok() {
+            forget_lost(editor);
+        }
         match theirs {
             Ok(theirs) if !editor.is_dirty() || theirs.0.scene == **editor.scene() => {
                 editor.take_theirs(theirs);
@@ -338,17 +330,16 @@ impl Files {
         wish: Option<PathRequest>,
     ) -> Option<FileOutcome> {
         let then = wish.as_ref().and_then(|wish| wish.then.clone());
-        editor.begin(OUTSIDE);
-        match (theirs.document, answer) {
-            (theirs, Reply::Yes) => {
-                editor.keep_mine(theirs.ok());
+        match answer {
+            Reply::Yes => {
+                theirs.leave(editor);
                 return wish.and_then(|_| self.save_then(ctx, editor, then));
             }
-            (Ok(theirs), Reply::No) => {
-                editor.take_theirs(theirs);
+            Reply::No => {
+                theirs.take(editor);
                 return then.and_then(|next| self.go_on(ctx, editor, next));
             }
-            (_, Reply::Other) => {
+            Reply::Other => {
                 self.wish(ctx, editor, PathRequest::new(editor, Ask::SaveScene, then));
             }
             _ => {}
@@ -359,7 +350,9 @@ impl Files {
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         // What was wrong with another file is over.
         editor.begin(Ask::OpenScene.title());
-        editor.begin(OUTSIDE);
+        if matches!(next, Next::New | Next::Example(_)) {
+            editor.begin(OUTSIDE);
+        }
         match next {
             Next::New => editor.start_new(),
             Next::Example(place) => editor.start_example(&EXAMPLES[place]),
@@ -374,8 +367,9 @@ impl Files {
     /// Opens a file; if it is refused, the document stays and the user is told why. A large one is read
     /// while the window goes on.
     pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
-        self.reading.clear();
-        self.reading.push_back(Reading::scene(editor, path));
+        // One scene takes the place of another; what becomes part of this one goes on, if this does.
+        self.reading.retain(|reading| !reading.is_scene());
+        self.reading.push_front(Reading::scene(editor, path));
         self.take_read(ctx, editor, AT_ONCE);
     }
 
@@ -414,7 +408,8 @@ impl Files {
                 let why = read.map_or_else(|error| error.to_string(), |_| reading.describe_late());
                 editor.report_error_in(Ask::ImportMesh.title(), why);
             }
-            Read::Again(sources) => editor.take_meshes(sources),
+            Read::Again(sources) if !reading.is_of_another(editor) => editor.take_meshes(sources),
+            Read::Again(_) => {}
             Read::Nothing => editor.report_error(reading.describe_fault()),
         }
     }
@@ -428,6 +423,7 @@ impl Files {
         match document {
             Ok(document) => {
                 editor.begin(Ask::OpenScene.title());
+                editor.begin(OUTSIDE);
                 editor.open(document, path);
                 self.remember(editor);
             }

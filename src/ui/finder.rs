@@ -9,7 +9,7 @@ use egui::{
 use indexmap::IndexSet;
 
 use super::add::Addition;
-use super::commands::{Command, KEYLESS, Next, SHORTCUTS, Zoom, name_of};
+use super::commands::{self, Command, Next, Zoom, name_of};
 use super::dialogs::Ask;
 use super::hint::Hinted as _;
 use super::layout::Part;
@@ -46,6 +46,18 @@ struct Find {
     aside: String,
     what: Found,
     is_enabled: bool,
+}
+
+impl Find {
+    /// What can be had.
+    fn of(name: String, aside: &str, what: Found) -> Self {
+        Self {
+            name,
+            aside: aside.to_owned(),
+            what,
+            is_enabled: true,
+        }
+    }
 }
 
 enum Found {
@@ -220,16 +232,12 @@ fn commands<'a>(
     editor: &'a Editor,
     recent: &'a [PathBuf],
 ) -> impl Iterator<Item = Find> + 'a {
-    let keyed = SHORTCUTS.iter().map(|shortcut| {
-        let keys = name_of(ui, shortcut.keys[0]);
-        (shortcut.command.clone(), shortcut.what, keys)
-    });
-    let keyless = KEYLESS
-        .iter()
-        .map(|(command, what)| (command.clone(), *what, String::new()));
-    let all = keyed.chain(keyless);
+    let all = commands::all();
     let all = all.filter(|(command, ..)| !matches!(command, Command::Find | Command::Escape));
-    let all = all.map(|(command, what, keys)| (command, what.to_owned(), keys));
+    let all = all.map(|(command, what, keys)| {
+        let keys = keys.map_or(String::new(), |keys| name_of(ui, keys));
+        (command.clone(), what.to_owned(), keys)
+    });
     all.chain(choices(editor, recent))
         .map(|(command, name, keys)| {
             let obstacle = obstacle(&command, editor);
@@ -254,12 +262,7 @@ fn also(find: &Find) -> &'static str {
 
 /// What the menu *Add* offers.
 fn additions() -> impl Iterator<Item = Find> {
-    Addition::all().map(|(addition, _, name)| Find {
-        name,
-        aside: String::new(),
-        what: Found::Addition(addition),
-        is_enabled: true,
-    })
+    Addition::all().map(|(addition, _, name)| Find::of(name, "", Found::Addition(addition)))
 }
 
 /// What is chosen in menus below the menus.
@@ -323,12 +326,10 @@ fn choices<'a>(
 /// The pack that what is selected wears.
 fn worn_by_selected(editor: &Editor) -> Option<Item> {
     let (scene, item) = (editor.scene(), editor.selection().item()?);
-    let object = scene
-        .objects
-        .get(item.index)
+    let worn = item
+        .color_pack(scene)
         .filter(|_| item.kind == Kind::Object)?;
-    let place = scene.color_packs.get_index_of(&object.color_pack)?;
-    Some(Item::pack(place))
+    scene.color_packs.get_index_of(worn).map(Item::pack)
 }
 
 /// What stands on top of the outliner, and the settings of the picture; each with what else it is called.
@@ -357,13 +358,7 @@ fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
         (name, Selection::Render, chosen.setting.name)
     }));
     names.into_iter().map(|(name, selection, also)| {
-        let find = Find {
-            name,
-            aside: "setting".to_owned(),
-            what: Found::Selection(selection),
-            is_enabled: true,
-        };
-        (find, also)
+        (Find::of(name, "setting", Found::Selection(selection)), also)
     })
 }
 
@@ -389,12 +384,7 @@ fn things<'a>(
     let all = groups.chain(all).filter(move |(name, ..)| has(name));
     all.map(|(name, kind, item)| {
         let selection = item.map_or_else(|| Selection::of_group(scene, name), Selection::from);
-        Find {
-            name: name.to_owned(),
-            aside: kind.to_owned(),
-            what: Found::Selection(selection),
-            is_enabled: true,
-        }
+        Find::of(name.to_owned(), kind, Found::Selection(selection))
     })
 }
 

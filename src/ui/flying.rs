@@ -1,11 +1,12 @@
 //! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
 //! rate.
 
-use egui::{Context, Event, Key, Modifiers, PointerButton, Response, Ui, Vec2, vec2};
+use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2, vec2};
 
 use super::flight_keys::{FLIGHT, FlightKey};
 use crate::editor::Motion;
 use crate::scene::Scene;
+use crate::ui::commands::take_escape;
 
 /// Radians per second of an arrow key.
 const TURN_SPEED: f64 = 0.9;
@@ -148,8 +149,7 @@ impl Flying {
 
     /// Whether Escape takes back how the camera was moved since looking around began; it means nothing else then.
     pub fn gives_up(&mut self, ui: &Ui) -> bool {
-        let gives_up = matches!(self.look, Look::Begins | Look::Around)
-            && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+        let gives_up = matches!(self.look, Look::Begins | Look::Around) && take_escape(ui);
         if gives_up {
             self.look = Look::GivenUp;
             // What flew meanwhile flies again when it is pressed anew.

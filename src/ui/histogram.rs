@@ -7,6 +7,7 @@ use egui::{Color32, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
 use super::theme::{GRID, palette};
 use crate::image::{Histogram, Image};
 use crate::scene::Scene;
+use crate::ui::rows::to_bytes;
 use crate::worker::Frame;
 
 /// Width and height of the graph in points.
@@ -29,9 +30,7 @@ impl Levels {
             return None;
         }
         self.of = Some(Arc::clone(&frame.image));
-        let level = |channel: f64| channel.round().clamp(0.0, 255.0) as u8;
-        let background = scene.background.to_array().map(level);
-        let counted = Histogram::of(&frame.image, background);
+        let counted = Histogram::of(&frame.image, to_bytes(scene.background));
         let clipped = counted.clipped;
         self.counted = Some(counted);
         Some(clipped)

@@ -50,7 +50,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
             };
             let edit = Edit::animation(animation, "Import path");
             let replaced = replaced_flight("it", &editor.scene().animation);
-            if is_made(editor, edit) {
+            if editor.changes(Action::Edit(edit)) {
                 let replaced = replaced.map_or(String::new(), |words| format!("; {words}"));
                 let keys = counted(count, "key");
                 editor.notify(format!("{keys} from {}{replaced}", path.display()));
@@ -150,13 +150,6 @@ pub fn check_whole(scene: &Scene) -> Result<(), String> {
     })
 }
 
-/// Makes a change. Whether there was one: it may be refused, with a reason of its own.
-fn is_made(editor: &mut Editor, edit: Edit) -> bool {
-    let before = editor.revision();
-    editor.apply(Action::Edit(edit));
-    editor.revision() != before
-}
-
 fn is_table(path: &Path) -> bool {
     has_ending(path, "csv")
 }
@@ -208,7 +201,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         "; F brings them into the picture"
     };
     edits.extend(camera.map(|camera| Edit::Camera(camera, "frame")));
-    if !is_made(editor, Edit::Each(edits, label)) {
+    if !editor.changes(Action::Edit(Edit::Each(edits, label))) {
         return;
     }
     let parts = Selection::all((first..last).map(Item::object));

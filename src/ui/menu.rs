@@ -102,9 +102,12 @@ fn edit_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     offer(ui, editor, &redo, Command::Redo, out);
     ui.separator();
     for (text, command) in ITEM_COMMANDS {
+        let is_copy = command == Command::Copy;
         offer(ui, editor, text, command, out);
+        if is_copy {
+            entry(ui, "Paste", Command::RequestPaste, out);
+        }
     }
-    entry(ui, "Paste", Command::RequestPaste, out);
     entry(ui, "Select all", Command::SelectAll, out);
     offer(ui, editor, "Merge equal packs", Command::MergePacks, out);
 }

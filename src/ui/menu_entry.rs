@@ -7,7 +7,7 @@ use super::icons;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use crate::editor::Editor;
-use crate::lab::capitalised;
+use crate::words::capitalised;
 
 /// What can be done to the selected item.
 pub const ITEM_COMMANDS: [(&str, Command); 14] = [

@@ -4,8 +4,7 @@ use std::cell::Cell;
 use std::ops::RangeInclusive;
 
 use egui::{
-    Align, Atom, Color32, Context, DragValue, Id, Key, Layout, Modifiers, Response, RichText, Ui,
-    vec2,
+    Align, Atom, Color32, Context, DragValue, Id, Key, Layout, Response, RichText, Ui, vec2,
 };
 use glam::DVec3;
 
@@ -14,6 +13,7 @@ use super::grain::{USUAL, grain};
 use super::hint::Hinted as _;
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
+use crate::ui::commands::take_escape;
 use crate::words::quoted;
 
 /// Letters that one of three fields in a row has room for.
@@ -78,8 +78,7 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     };
     let last = last.filter(is_own);
     let is_let_go = !response.dragged() && last.is_some();
-    let is_given_up =
-        is_let_go && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
+    let is_given_up = is_let_go && take_escape(ui);
     let start = last.map_or(value, |last| last.start);
     if response.dragged() || is_given_up {
         let stage = match last {

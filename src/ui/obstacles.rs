@@ -26,7 +26,9 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!has).then_some("nothing that can be hidden is selected")
         }
         Command::Join => {
-            let (scene, items) = (editor.scene(), editor.selection().items());
+            // Lights that are selected as well stay what they are.
+            let scene = editor.scene();
+            let items = editor.selection().of_kind(Kind::Object);
             let mut shapes = items.iter().map(|item| shape_of(scene, *item));
             let can = match items.len() {
                 1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
@@ -76,11 +78,8 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             [_] => None,
             _ => Some("several things are selected"),
         },
-        Command::Play
-        | Command::FirstFrame
-        | Command::LastFrame
-        | Command::FrameBack
-        | Command::FrameOn
+        Command::Play if editor.scene().animation.duration() == 0.0 => Some("nothing moves yet"),
+        Command::FirstFrame | Command::LastFrame | Command::FrameBack | Command::FrameOn
             if editor.scene().animation.is_still() =>
         {
             Some("nothing moves yet")

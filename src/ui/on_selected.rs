@@ -32,21 +32,7 @@ pub fn joined(editor: &Editor) -> Vec<usize> {
 
 /// Every object that wears the pack of an object, or the pack that is the item.
 pub fn with_same_pack(scene: &Scene, item: Item) -> Selection {
-    let pack = match item.kind {
-        Kind::Object => scene
-            .objects
-            .get(item.index)
-            .map(|object| &object.color_pack),
-        Kind::Pack => scene
-            .color_packs
-            .get_index(item.index)
-            .map(|(name, _)| name),
-        Kind::Light => {
-            let light = scene.lights.get(item.index);
-            let marker = light.and_then(|light| light.marker.as_ref());
-            marker.map(|marker| &marker.color_pack)
-        }
-    };
+    let pack = item.color_pack(scene);
     let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
     let others = wearing.filter(|other| other.kind == Kind::Object && *other != item);
     // What was selected stays so, and is what the inspector shows.
@@ -76,9 +62,7 @@ pub fn duplicate_all(editor: &mut Editor) {
     items.sort_unstable();
     // From the last on: a copy does not move those before it.
     let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
-    let before = editor.revision();
-    editor.apply(Action::Edit(Edit::Each(edits.collect(), label)));
-    if editor.revision() != before {
+    if editor.changes(Action::Edit(Edit::Each(edits.collect(), label))) {
         // Each stands behind what it is a copy of.
         let copies = items.iter().zip(1..);
         let copies = copies.map(|(item, further)| Item::pack(item.index + further));

@@ -9,7 +9,7 @@ use egui::{Context, Ui};
 
 use super::prompts::{Reply, question};
 use super::theme::GRID;
-use crate::editor::Editor;
+use crate::editor::{Editor, OwnFile};
 use crate::files::{Marks, Stamp, is_missing, time_of};
 use crate::mesh::marks_of_mesh;
 use crate::scene::{Document, List, Object, SceneError, differences};
@@ -105,11 +105,19 @@ impl Watch {
             self.look_on();
         }
         let is_gone = is_missing && was_missing;
-        if is_gone && !editor.is_gone() {
+        if is_gone && editor.own_file() != OwnFile::Gone {
             let path = path.display();
-            editor.report_error_in(OUTSIDE, format!("{path} is not there any more: it was moved or deleted. What is open here is in no file until it is saved again"));
+            tell_lost(
+                editor,
+                OwnFile::Gone,
+                format!(
+                    "{path} is not there any more: it was moved or deleted. What is open here is in no file until it is saved again"
+                ),
+            );
         }
-        editor.set_gone(is_gone);
+        if !is_gone && editor.own_file() == OwnFile::Gone {
+            editor.set_own_file(OwnFile::Whole);
+        }
         is_gone
     }
 
@@ -184,6 +192,19 @@ impl Watch {
     }
 }
 
+/// Tells that nothing but the window has what was in the file of the document, and why.
+pub fn tell_lost(editor: &mut Editor, own_file: OwnFile, why: String) {
+    editor.begin(OUTSIDE);
+    editor.report_error_in(OUTSIDE, why);
+    editor.set_own_file(own_file);
+}
+
+/// If something was wrong with that file, it is over.
+pub fn forget_lost(editor: &mut Editor) {
+    editor.begin(OUTSIDE);
+    editor.set_own_file(OwnFile::Whole);
+}
+
 /// A file that meshes refer to.
 struct MeshFile {
     folder: PathBuf,
@@ -236,18 +257,44 @@ impl Guard {
 /// What another program has written, and how it differs.
 pub struct Theirs {
     /// What it has written.
-    pub document: Result<(Document, Stamp), SceneError>,
+    document: Result<(Document, Stamp), SceneError>,
+    /// What tells it from the next, if it cannot be read as a scene.
+    unread: Option<Stamp>,
     lines: Vec<String>,
 }
 
 impl Theirs {
     /// Beside the document in the editor.
-    pub fn new(editor: &Editor, document: Result<(Document, Stamp), SceneError>) -> Self {
+    pub fn new(editor: &Editor, mut document: Result<(Document, Stamp), SceneError>) -> Self {
+        let mut unread = None;
+        if let Some(path) = editor.path().filter(|_| document.is_err()) {
+            // Its stamp first: what is written from now on is news.
+            unread = Stamp::read(path);
+            document = Document::load_stamped(path);
+        }
         let lines = match &document {
             Ok((theirs, _)) => differences(editor.scene(), &theirs.scene),
             Err(error) => vec![error.to_string()],
         };
-        Self { document, lines }
+        Self {
+            document,
+            unread,
+            lines,
+        }
+    }
+
+    /// The own scene stays; the next save replaces this.
+    pub fn leave(self, editor: &mut Editor) {
+        editor.begin(OUTSIDE);
+        editor.keep_mine(self.document.ok(), self.unread);
+    }
+
+    /// This takes the place of the own scene, if it is one.
+    pub fn take(self, editor: &mut Editor) {
+        if let Ok(theirs) = self.document {
+            editor.begin(OUTSIDE);
+            editor.take_theirs(theirs);
+        }
     }
 
     /// Asks which of both is to stay: Yes for the own, No for theirs, and Other for both.
@@ -284,7 +331,12 @@ impl Theirs {
             Err(_) => "The file cannot be read any more:",
         });
         for line in self.lines.iter().take(MOST_LINES) {
-            ui.weak(line);
+            // Below a sentence stands what must keep its columns.
+            let (sentence, excerpt) = line.split_once('\n').unwrap_or((line, ""));
+            ui.weak(sentence);
+            if !excerpt.is_empty() {
+                ui.weak(egui::RichText::new(excerpt).monospace());
+            }
         }
     }
 }

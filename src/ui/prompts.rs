@@ -84,6 +84,18 @@ fn tell_going(ui: &mut Ui, going: Option<&str>) {
     }
 }
 
+/// A path as people type it: `~` is the home folder.
+pub fn typed_path(text: &str) -> PathBuf {
+    let text = text.trim();
+    match (text.strip_prefix('~'), std::env::home_dir()) {
+        (Some(""), Some(home)) => home,
+        (Some(rest), Some(home)) if rest.starts_with('/') => {
+            home.join(rest.trim_start_matches('/'))
+        }
+        _ => PathBuf::from(text),
+    }
+}
+
 /// A path that is being typed.
 pub struct PathPrompt {
     ask: Ask,
@@ -124,11 +136,7 @@ impl PathPrompt {
 
     /// The same as it is typed.
     fn typed(&self) -> PathBuf {
-        let text = self.text.trim();
-        match (text.strip_prefix("~/"), std::env::home_dir()) {
-            (Some(rest), Some(home)) => home.join(rest),
-            _ => PathBuf::from(text),
-        }
+        typed_path(&self.text)
     }
 
     /// Draws the prompt.
@@ -358,6 +366,14 @@ pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tilde_is_the_home_folder() {
+        let home = std::env::home_dir().expect("a home");
+        assert_eq!(typed_path(" ~/frames "), home.join("frames"));
+        assert_eq!(typed_path("~"), home);
+        assert_eq!(typed_path("~other/a"), PathBuf::from("~other/a"));
+    }
 
     #[test]
     fn the_stem_of_a_path_is_its_name_without_folder_and_ending() {

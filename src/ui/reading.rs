@@ -27,6 +27,7 @@ pub struct Reading {
     /// Where it is.
     pub path: PathBuf,
     answer: Background<Read>,
+    is_scene: bool,
     since: Instant,
     /// The document when its reading began, and which of them it was, see [`Editor::documents`].
     before: Arc<Scene>,
@@ -36,9 +37,16 @@ pub struct Reading {
 impl Reading {
     /// Begins to read a scene.
     pub fn scene(editor: &Editor, path: &Path) -> Self {
-        Self::start(editor, path, |path| {
-            Read::Scene(Box::new(Document::load_stamped(&path)))
-        })
+        let read = |path: PathBuf| Read::Scene(Box::new(Document::load_stamped(&path)));
+        Self {
+            is_scene: true,
+            ..Self::start(editor, path, read)
+        }
+    }
+
+    /// Whether what is read takes the place of the document.
+    pub fn is_scene(&self) -> bool {
+        self.is_scene
     }
 
     /// Begins to read a mesh file.
@@ -66,6 +74,7 @@ impl Reading {
         Self {
             path: path.to_owned(),
             answer: Background::start("glint-reader", move || read(own)),
+            is_scene: false,
             since: Instant::now(),
             before: Arc::clone(editor.scene()),
             document: editor.documents(),
@@ -81,8 +90,7 @@ impl Reading {
     /// Whether the document was changed since.
     pub fn is_outrun(&self, editor: &Editor) -> bool {
         let is_other = !Arc::ptr_eq(&self.before, editor.scene());
-        let is_flying = editor.timeline().recorded().is_some() || editor.is_making_keys();
-        (editor.is_dirty() && is_other) || is_flying
+        (editor.is_dirty() && is_other) || editor.is_recording()
     }
 
     /// Whether another document is open by now.

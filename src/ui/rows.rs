@@ -378,7 +378,8 @@ fn parse_hex(text: &str) -> Option<u32> {
     }
 }
 
-fn to_bytes(color: DVec3) -> [u8; 3] {
+/// The channels of a colour from 0 to 255, rounded; what is beyond is the nearest of them.
+pub fn to_bytes(color: DVec3) -> [u8; 3] {
     color.to_array().map(|channel| channel.round() as u8)
 }
 

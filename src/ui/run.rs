@@ -250,9 +250,7 @@ impl App {
         self.editor.begin(PASTE);
         let is_whole = pasted.mesh_problems().next().is_none();
         let paste = Edit::Paste(Box::new(pasted), "Paste");
-        let before = self.editor.revision();
-        self.editor.apply(Action::Edit(paste));
-        if self.editor.revision() != before {
+        if self.editor.changes(Action::Edit(paste)) {
             self.tell_unseen("What was pasted");
             if !is_whole {
                 self.editor.tell_missing_meshes();
@@ -352,9 +350,9 @@ impl App {
                 _ => return,
             },
         };
-        let before = editor.revision();
-        editor.apply(action);
-        if let Some(done) = told(command).filter(|_| editor.revision() != before) {
+        if editor.changes(action)
+            && let Some(done) = told(command)
+        {
             editor.notify_of_step(done.to_owned());
         }
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use egui::Context;
 use serde::Serialize;
 
-use crate::files::resident_bytes;
+use crate::machine::resident_bytes;
 
 /// What a start has cost.
 #[derive(Clone, Copy, Debug, Serialize)]

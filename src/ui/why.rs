@@ -9,6 +9,7 @@ use super::theme::{GRID, ROW, palette};
 use crate::editor::Editor;
 use crate::lab::{Lit, Share, Sight, drawn, explain};
 use crate::scene::{Aspect, Scene, format_number};
+use crate::ui::rows::to_bytes;
 use crate::worker::Background;
 
 /// Radius of the ring around the place, in points.
@@ -75,9 +76,7 @@ impl Why {
         let Some((origin, direction, of)) = &self.asked else {
             return;
         };
-        let is_same = of.has_same_things(scene)
-            && (of.light_visualization, &of.render) == (scene.light_visualization, &scene.render);
-        if !is_same && !self.is_awaited() {
+        if !of.has_same_look(scene) && !self.is_awaited() {
             self.ask(scene, (*origin, *direction));
         }
     }
@@ -234,9 +233,7 @@ fn term(ui: &mut Ui, words: &str, color: DVec3) {
 
 fn swatch(ui: &mut Ui, color: DVec3) {
     let (rect, _) = ui.allocate_exact_size(vec2(ROW, ROW - GRID / 2.0), Sense::hover());
-    let [red, green, blue] = (color * 255.0)
-        .to_array()
-        .map(|channel| channel.round() as u8);
+    let [red, green, blue] = to_bytes(color * 255.0);
     let fill = Color32::from_rgb(red, green, blue);
     let line = egui::Stroke::new(1.0, palette(ui.ctx()).line);
     ui.painter()

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use super::commands::Next;
 use super::dialogs::Ask;
+use super::outside::Theirs;
+use super::prompts::PathPrompt;
 use crate::editor::Editor;
 use crate::worker::Background;
 
@@ -47,6 +49,20 @@ impl PathRequest {
             revision: editor.revision(),
         }
     }
+}
+
+/// A question over the window.
+pub enum Prompt {
+    /// What becomes of unsaved changes.
+    Unsaved(Next),
+    /// The answer was to save: as soon as a recorded flight has become keys.
+    Saving(Next),
+    /// Whether quitting is meant.
+    Quit,
+    /// Which file, where the desktop has no dialog for that.
+    Path(PathRequest, PathPrompt),
+    /// Another program has written the file; the wish is to save, if it is one.
+    Outside(Box<Theirs>, Option<PathRequest>),
 }
 
 /// A desktop dialog that is open.

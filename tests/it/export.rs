@@ -1079,7 +1079,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
         let (pattern, folder) = (Pattern::default(), folder.clone());
         Sequence::new(scene.into(), None, pattern, Format::Ppm, folder).expect("a sequence")
     };
-    assert_eq!(sequence(512).missing().expect("readable").len(), 0);
+    assert_eq!(sequence(512).missing().expect("readable").count(), 0);
     // It has ended: nobody is told of it again.
     let harness = EditorHarness::kept_in(data.path(), FLIGHT.into());
     let told = harness.window.query_by_label_contains("interrupted");
@@ -1215,7 +1215,7 @@ fn an_export_waits_goes_on_and_is_given_up() {
     let left = sequence("first", "1-202")
         .missing()
         .expect("readable")
-        .len();
+        .count();
     assert!(left < 202 - still, "{left} left");
 }
 

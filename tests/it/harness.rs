@@ -181,6 +181,12 @@ impl EditorHarness {
         self.window.state().editor()
     }
 
+    /// The names of what is selected.
+    pub fn selected(&self) -> Vec<&str> {
+        let items = self.editor().selection().items().iter();
+        items.filter_map(|item| item.name(self.scene())).collect()
+    }
+
     pub fn scene(&self) -> &Scene {
         self.editor().scene()
     }
@@ -223,12 +229,17 @@ impl EditorHarness {
         self.settle();
     }
 
-    /// Opens a menu and chooses an entry of it.
-    pub fn choose(&mut self, menu: &str, entry: &str) {
+    /// Clicks the button of this name, where other things have the same.
+    pub fn press_button(&mut self, name: &str) {
         self.window
-            .get_by_role_and_label(Role::Button, menu)
+            .get_by_role_and_label(Role::Button, name)
             .click();
         self.settle();
+    }
+
+    /// Opens a menu and chooses an entry of it.
+    pub fn choose(&mut self, menu: &str, entry: &str) {
+        self.press_button(menu);
         self.click(entry);
     }
 

@@ -716,6 +716,22 @@ fn a_key_is_dragged_in_the_view() {
 }
 
 #[test]
+fn undo_of_a_movement_out_of_the_shot_looks_through_it_again() {
+    let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
+    harness.press(Modifiers::NONE, Key::C);
+    assert!(harness.editor().looks_through());
+    harness.window.key_down(Key::W);
+    (0..20).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::W);
+    harness.settle();
+    assert!(!harness.editor().looks_through());
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert!(harness.editor().looks_through());
+    harness.press(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert!(!harness.editor().looks_through());
+}
+
+#[test]
 fn what_has_keys_is_keyed_by_changing_it() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
     harness.click("Light 1");

@@ -177,6 +177,21 @@ fn a_turntable_is_a_circle_that_looks_at_its_middle() {
 }
 
 #[test]
+fn an_eight_from_above_does_not_turn_the_picture_and_there_is_no_ellipse() {
+    let target = DVec3::new(10.0, 20.0, -30.0);
+    let start = camera(target + DVec3::Y * 100.0, 10.0, -90.0);
+    let path = CameraPath::new(&Preset::FigureEight.keys(&start, target, 8.0));
+    let up = |time: f64| at(&path, time).basis().expect("a basis").y_axis;
+    let far = |time: f64| (at(&path, time).position - start.position).length();
+    assert!(far(2.0) > 50.0, "{}", far(2.0));
+    for time in times(&path, 80) {
+        assert!(up(time).dot(up(0.0)) > 0.7, "{time}: {}", up(time));
+    }
+    let ellipse = Preset::Ellipse.keys(&start, target, 8.0);
+    assert!(ellipse.iter().all(|key| key.value == ellipse[0].value));
+}
+
+#[test]
 fn a_turntable_from_above_turns_the_picture_evenly() {
     let target = DVec3::new(10.0, 20.0, -30.0);
     let start = camera(target + DVec3::Y * 100.0, 10.0, -90.0);

@@ -122,6 +122,12 @@ fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     assert!(found.worst.off * 1024.0 <= 6.0, "{:?}", found.worst);
     assert!(found.keys.len() < 40, "{} keys", found.keys.len());
     assert_eq!(simplify(&calm, &self::seen(&calm), 6.0 / 1024.0).jumps, 0);
+    // A key that is tapped turns the view for a few samples, between rests.
+    let tapped = turned(&calm, |n| (n.clamp(20, 24) - 20) as f64 * 0.1);
+    assert_eq!(
+        simplify(&tapped, &self::seen(&tapped), 6.0 / 1024.0).jumps,
+        0
+    );
 }
 
 #[test]
@@ -236,6 +242,15 @@ fn pauses_are_trimmed_and_flights_stretched() {
     let trimmed = Retime::TrimPauses.apply(path.keys());
     let times: Vec<f64> = trimmed.iter().map(|key| key.time).collect();
     assert_eq!(times, [0.0, 1.0, 2.0]);
+    // A zoom is no pause, beside a way and alone.
+    let mut zooms = path.keys().to_vec();
+    for key in &mut zooms[2..] {
+        key.value.projection_distance *= 2.0;
+    }
+    assert_eq!(paused_seconds(&zooms), 0.0);
+    let alone: Vec<_> = zooms[1..3].to_vec();
+    assert_eq!(Retime::TrimPauses.apply(&alone), alone);
+    assert_eq!(Retime::TrimPauses.apply(&zooms), zooms);
     let longer = stretched_keys(path.keys(), 10.0);
     assert_eq!(longer[2].time, 8.0);
     assert_eq!(longer[3].value, path.keys()[3].value);
@@ -325,6 +340,13 @@ fn paths_survive_their_texts() {
         error.expect_err("bad").to_string(),
         "line 3: y must be a number, found \"oops\""
     );
+    let words = "\n  \r\ntime;x;y;z;projection\n2,5;0;0;0;orthographic\n1;0;0;0;PERSPECTIVE\n";
+    let read = from_table(words, &Camera::default()).expect("a table");
+    assert_eq!(read[1].time, 2.5);
+    assert_eq!(read[1].value.projection, Projection::Orthographic);
+    let late = from_table("\ntime,x,y,z\n0,0,0,0\n-1,0,0,0\n", &Camera::default());
+    let late = late.expect_err("too early").to_string();
+    assert!(late.contains("line 4") && late.contains("86400"), "{late}");
     assert!(from_table("time,x,y\n", &Camera::default()).is_err());
     assert!(from_table("", &Camera::default()).is_err());
     let quoted = "\u{feff}\"time\",\"x\",y,\"z\"\r\n\r\n\"0\",\"1\", 2,3\r\n";

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::map::{Map, Tries, places, scales};
+use super::map::{AWAY, Map, Tries, places, scales};
 use super::stage::light;
 use super::subject::Subject;
 use crate::plan::RenderRequest;
@@ -41,7 +41,7 @@ fn levels(scene: &Scene) -> Vec<[f32; 3]> {
 
 /// Red surfaces, and green ones in the same places if they are wanted; so large, so many sizes away.
 fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
-    let place = |v: DVec3| (v + DVec3::new(0.6, -0.64, 0.48) * away) * scale;
+    let place = |v: DVec3| (v + AWAY * away) * scale;
     let mut scene = Scene::empty();
     (scene.background, scene.ambient_intensity) = (DVec3::ZERO, 1.0);
     scene.lights = List::default();

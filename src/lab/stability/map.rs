@@ -2,6 +2,8 @@
 
 use std::iter::Sum;
 
+use glam::DVec3;
+
 use super::subject::Subject;
 
 /// Scales of a scene whose size is one.
@@ -10,6 +12,9 @@ const SCALES: [f64; 12] = [
 ];
 /// Distances of a scene from the origin, in sizes of it.
 const PLACES: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+
+/// Which way scenes are away from the origin: along no axis, at distance 1.
+pub const AWAY: DVec3 = DVec3::new(0.6, -0.64, 0.48);
 
 /// What a map's axis is.
 #[derive(Clone, Debug, PartialEq)]

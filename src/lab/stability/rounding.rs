@@ -46,17 +46,11 @@ pub fn maps() -> Vec<Map> {
 }
 
 fn bounces() -> Axis {
-    Axis {
-        name: "bounces",
-        values: vec![0.0, 1.0, 2.0, 3.0, 4.0],
-    }
+    Axis::new("bounces", &[0.0, 1.0, 2.0, 3.0, 4.0])
 }
 
 fn distances() -> Axis {
-    Axis {
-        name: "sizes away",
-        values: vec![3.0, 30.0, 300.0, 3000.0],
-    }
+    Axis::new("sizes away", &[3.0, 30.0, 300.0, 3000.0])
 }
 
 /// As 8 bits show them: what is brighter than white is white.

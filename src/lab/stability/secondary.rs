@@ -1,7 +1,7 @@
 //! Shadow rays that hit the surface that they start on, or miss what stands close to it: pictures of
 //! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
 
-use super::map::{Map, Tries, places, scales};
+use super::map::{AWAY, Map, Tries, places, scales};
 use super::stage::light;
 use super::subject::Subject;
 use crate::plan::{Model, RenderRequest};
@@ -133,9 +133,7 @@ fn is_inner(lit: &[bool], index: usize) -> bool {
 
 /// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
 fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
-    let index = |x: f64, y: f64, z: f64| {
-        (DVec3::new(x, y, z) + DVec3::new(0.6, -0.64, 0.48) * away) * scale
-    };
+    let point = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) + AWAY * away) * scale;
     let mut scene = Scene::empty();
     let white = DVec3::splat(255.0);
     let black = DVec3::splat(0.0);
@@ -153,16 +151,16 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         chalk(
             "Floor",
             Shape::Plane(Plane {
-                point: index(0.0, 0.0, 0.0),
+                point: point(0.0, 0.0, 0.0),
                 normal: DVec3::new(0.0, 1.0, 0.0),
             }),
         ),
         chalk(
             "Card",
             Shape::Triangle(Triangle {
-                a: index(0.7, 0.0, 0.1),
-                b: index(0.9, 0.8, -0.1),
-                c: index(1.1, 0.0, -0.3),
+                a: point(0.7, 0.0, 0.1),
+                b: point(0.9, 0.8, -0.1),
+                c: point(1.1, 0.0, -0.3),
             }),
         ),
     ]);
@@ -170,13 +168,13 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
         BallKind::Sphere => scene.objects.push(chalk(
             "Ball",
             Shape::Sphere(Sphere {
-                center: index(0.0, 0.5, 0.0),
+                center: point(0.0, 0.5, 0.0),
                 radius: 0.5 * scale,
             }),
         )),
         BallKind::Mesh => {
             for (n, face) in super::triangle::ball().into_iter().enumerate() {
-                let corner = |v: DVec3| index(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
+                let corner = |v: DVec3| point(v.x * 0.5, v.y * 0.5 + 0.5, v.z * 0.5);
                 let [a, b, c] = face.map(corner);
                 let face = Shape::Triangle(Triangle { a, b, c });
                 scene.objects.push(chalk(&format!("Face {n}"), face));
@@ -185,13 +183,13 @@ fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     }
     scene.lights = List::from(vec![Light {
         name: "Light".to_owned(),
-        position: index(1.6, 1.9, 1.3),
+        position: point(1.6, 1.9, 1.3),
         intensity: 1.0,
         visible: true,
         marker: None,
     }]);
     scene.camera = Camera {
-        position: index(0.4, 1.3, 2.6),
+        position: point(0.4, 1.3, 2.6),
         look_at: DVec3::new(0.0, -0.4, -1.0),
         up: DVec3::new(0.0, 1.0, 0.0),
         projection_distance: 1.0,

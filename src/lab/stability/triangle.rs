@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{Map, Tries, places, scales, scattered};
+use super::map::{AWAY, Map, Tries, places, scales, scattered};
 use super::subject::Subject;
 use crate::primitive::{PackedTriangle, Primitive as _, Ray, Spared, Tip};
 use crate::scene::{Method as _, Methods, TriangleMethod};
@@ -10,8 +10,6 @@ use crate::simd::Vec3;
 
 /// Tries in each cell for a first look.
 const TRIES: u64 = 300;
-/// Which way the mesh is away from the origin.
-const AWAY: DVec3 = DVec3::new(0.6, -0.64, 0.48);
 /// A place inside, off the middle.
 const INSIDE: DVec3 = DVec3::new(0.11, -0.07, 0.05);
 

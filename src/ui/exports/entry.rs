@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::order::{EXPORT, Order};
+use super::order::{EXPORT, Order, UNKEPT};
 use super::progress::show_state;
 use super::video_maker::{VideoMaker, VideoState};
 use crate::editor::Editor;
 use crate::export::Sequence;
+use crate::files::absolute;
 use crate::ui::pictures::Pictures;
 use crate::ui::theme::THUMB;
 use crate::ui::upload::whole;
@@ -85,8 +86,13 @@ impl Entry {
     /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
     /// ended without being finished.
     pub fn update(&mut self, state: Option<&ExportState>, editor: &mut Editor) -> Option<Order> {
-        if self.is_over() {
-            return None;
+        let problem = self.order.as_mut()?.take_problem();
+        if let Some(why) = problem {
+            let name = &self.name;
+            editor.report_error_in(
+                UNKEPT,
+                format!("{name} cannot be kept ({why}): if Glint ends before it is done, it has to be asked for again"),
+            );
         }
         if let Some(video) = &mut self.video
             && !matches!(video.state, VideoState::Waiting)
@@ -203,7 +209,6 @@ fn ends_of(sequence: &Sequence) -> (u64, u64) {
 
 /// Where the frames of a sequence are: their folder, and their names and ending.
 fn files_of(sequence: &Sequence) -> (PathBuf, String) {
-    let folder = std::path::absolute(&sequence.folder);
     let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
-    (folder.unwrap_or_default(), names)
+    (absolute(&sequence.folder), names)
 }

@@ -10,6 +10,7 @@ use crate::editor::Editor;
 use crate::export::{
     Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video, VideoError,
 };
+use crate::files::absolute;
 use crate::image::Format;
 use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Problem, Sampling, Scene};
 use crate::ui::commands::Command;
@@ -17,6 +18,7 @@ use crate::ui::dialogs::Ask;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::number::{Field, lone};
+use crate::ui::prompts::typed_path;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::ROW;
 
@@ -140,9 +142,8 @@ impl Settings {
 
     /// The same with a folder that is found from everywhere.
     pub fn at_home(self) -> Self {
-        let folder = Path::new(self.folder.trim());
-        let absolute = std::path::absolute(folder);
-        let folder = absolute.map_or(self.folder.clone(), |folder| folder.display().to_string());
+        let folder = absolute(&typed_path(&self.folder));
+        let folder = folder.display().to_string();
         Self { folder, ..self }
     }
 
@@ -228,7 +229,7 @@ impl Settings {
         if self.folder.trim().is_empty() {
             return Err(SettingsError::NoFolder);
         }
-        let folder = PathBuf::from(self.folder.trim());
+        let folder = typed_path(&self.folder);
         let sequence = Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder)?;
         if let Some((_, video)) = self.video(&sequence) {
             video.check(&sequence)?;
@@ -239,8 +240,7 @@ impl Settings {
     /// Where the video is to be that follows the frames.
     pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
         let video = self.video?;
-        let folder = std::path::absolute(&sequence.folder);
-        let folder = folder.unwrap_or_else(|_| sequence.folder.clone());
+        let folder = absolute(&sequence.folder);
         let name = folder.file_name();
         let name = name.map_or("frames".into(), |name| name.to_string_lossy());
         let path = folder.join(format!("{name}.{}", video.ending()));
@@ -346,10 +346,10 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
 }
 
 fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
-    let whole = std::path::absolute(settings.folder.trim());
+    let whole = absolute(&typed_path(&settings.folder));
     let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
     ui.add_sized([FIELDS - 90.0, ROW], field)
-        .hint(whole.map_or(String::new(), |path| path.display().to_string()))
+        .hint(whole.display().to_string())
         .accessible_name("folder");
     if ui.button("Browse…").clicked() {
         out.commands.push(Command::Ask(Ask::ExportFolder));

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::fields::Settings;
 use super::video_maker::video_threads;
 use crate::editor::{Editor, Mode};
-use crate::export::{Sequence, Video};
+use crate::export::{LOOP_HINT, Sequence, Video};
 use crate::image::{Format, Image, render_into};
 use crate::plan::{Planner, RenderRequest};
 use crate::trace::{RenderControl, Threads};
@@ -174,14 +174,14 @@ impl Forecast {
             let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
             let missing = self.found.as_ref().and_then(|found| found.as_ref().ok());
             let replaced = match missing {
-                Some(Missing { has_video: true, .. }) => " in place of an older one",
+                Some(Missing {
+                    has_video: true, ..
+                }) => " in place of an older one",
                 _ => "",
             };
             let looped = match missing {
-                Some(Missing { is_loop: true, .. }) => {
-                    "; its last frame is the first again: it loops without a stop if that is left out"
-                }
-                _ => "",
+                Some(Missing { is_loop: true, .. }) => format!("; {LOOP_HINT}"),
+                _ => String::new(),
             };
             format!(", then {name}{replaced}{time}{remark}{looped}")
         });
@@ -282,9 +282,9 @@ fn missing(sequence: &Sequence) -> Result<Missing, String> {
         });
     }
     let missing = sequence.missing().map_err(|error| error.to_string())?;
-    let is_there = |frame: &&u64| sequence.path(**frame).exists();
+    let is_there = |frame: &u64| sequence.path(*frame).exists();
     Ok(Missing {
-        count: missing.len(),
+        count: missing.count(),
         replaced: missing.iter().filter(is_there).count(),
         ..Missing::default()
     })

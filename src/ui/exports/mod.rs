@@ -18,14 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Button, Context, Grid, Rect, RichText, ScrollArea, Ui, Window};
+use egui::{Context, Grid, Rect, ScrollArea, Ui, Window};
 
 use self::entry::Entry;
 use self::fields::{Settings, fields, presets};
 use self::forecast::Forecast;
 pub use self::kept::KeptSettings;
 use self::kept::Owner;
-use self::order::{EXPORT, Order};
+use self::order::{EXPORT, Order, UNKEPT};
 use self::progress::seconds_left;
 use super::interchange::check_whole;
 use super::pictures::Pictures;
@@ -36,6 +36,7 @@ use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
+use crate::ui::prompts::primary;
 
 /// What is left free below the list of exports, in points.
 const MARGIN: f32 = 2.0 * GRID;
@@ -121,7 +122,7 @@ impl Exports {
 
     /// Tells of exports that have ended, and makes their videos.
     pub fn update(&mut self, editor: &mut Editor, pictures: &Pictures) {
-        let states = pictures.worker().exports();
+        let (states, ended) = (pictures.worker().exports(), self.ended);
         for entry in &mut self.entries {
             let state = states.iter().find(|state| state.id == entry.id);
             let was_over = entry.is_over();
@@ -131,6 +132,9 @@ impl Exports {
                 self.interrupted.push(left);
             }
             self.ended += usize::from(entry.is_over() && !was_over);
+        }
+        if self.ended > ended && self.entries.iter().all(Entry::is_over) {
+            editor.begin(UNKEPT);
         }
         let is_listed = |entry: &Entry| states.iter().any(|state| state.id == entry.id);
         self.entries
@@ -146,7 +150,7 @@ impl Exports {
         let Some(state) = at_work.or_else(|| going().next()) else {
             return self.entries.iter().find_map(Entry::describe_rest);
         };
-        let done = state.done.kept + state.done.written;
+        let done = state.done.so_far();
         let left = match seconds_left(state) {
             Some(seconds) => format!(" · {} left", time_in_words(seconds)),
             None if state.is_paused => " · paused".to_owned(),
@@ -276,11 +280,9 @@ impl Exports {
                 ui.label(forecast.describe(&settings, sequence));
             }
         }
-        let text = RichText::new("Export").color(colors.on_accent);
-        let start = ui.add_enabled(
-            sequence.is_ok() && !is_making,
-            Button::new(text).fill(colors.accent),
-        );
+        let can_start = sequence.is_ok() && !is_making;
+        let start = ui.add_enabled_ui(can_start, |ui| primary(ui, "Export"));
+        let start = start.inner;
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {
@@ -390,6 +392,10 @@ impl Exports {
             }
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
+            if self.interrupted.iter().all(|order| order.why.is_none()) {
+                // What was wrong with it is over.
+                editor.begin(EXPORT);
+            }
         }
     }
 }

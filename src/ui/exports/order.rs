@@ -12,6 +12,8 @@ use crate::worker::Background;
 
 /// What messages about exports are about.
 pub const EXPORT: &str = "export";
+/// What messages are about that tell of exports that end with the program.
+pub const UNKEPT: &str = "Exports that are not kept";
 
 /// First line of the scene that is kept: what is asked for follows.
 const MARK: &str = "// export: ";
@@ -30,8 +32,8 @@ pub struct Order {
     pub scene: Arc<Scene>,
     /// Where it is kept; nowhere, if the system gives no place.
     place: Option<Arc<Recovery>>,
-    /// The text on its way there.
-    writing: Background<()>,
+    /// The text on its way there; why it did not arrive.
+    writing: Background<Result<(), String>>,
 }
 
 impl Order {
@@ -39,17 +41,18 @@ impl Order {
     pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
         // The next program may run elsewhere.
         let settings = settings.at_home();
-        let place = folder.and_then(|folder| Recovery::new(&folder.join(FOLDER)).ok());
-        let place = place.map(Arc::new);
+        let place = folder.map(|folder| Recovery::new(&folder.join(FOLDER)));
+        let place = place.map(|place| place.map(Arc::new).map_err(|error| error.to_string()));
         // With the triangles of its meshes: their files may be others when it goes on.
         let document = Document::of(editor.scene().taken_in());
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
             let settings = settings.clone();
             Background::start("glint-order", move || {
-                // Without it, an export that is killed has to be asked for again.
-                let text = text_of(&settings, document);
-                let _ = text.map(|text| place.keep(&text, path.as_deref(), None));
+                let place = place?;
+                let text = text_of(&settings, document).ok_or("it has no text")?;
+                let kept = place.keep(&text, path.as_deref(), None);
+                kept.map_err(|error| error.to_string())
             })
         });
         Self {
@@ -57,9 +60,16 @@ impl Order {
             settings,
             why: None,
             scene: Arc::clone(editor.scene()),
-            place,
+            place: place.and_then(Result::ok),
             writing: writing.unwrap_or_default(),
         }
+    }
+
+    /// Why it cannot be kept, once that is known: if the program is killed, it has to be asked for again.
+    pub fn take_problem(&mut self) -> Option<String> {
+        let kept = self.writing.take()?;
+        kept.unwrap_or_else(|no_answer| Err(no_answer.to_string()))
+            .err()
     }
 
     /// What ended programs have left unfinished.
@@ -157,6 +167,22 @@ mod tests {
     }
 
     #[test]
+    fn an_order_that_cannot_be_kept_says_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a file");
+        std::fs::write(&file, "").expect("written");
+        let editor = Editor::demo();
+        for (folder, is_told) in [(Some(&*file), true), (None, false)] {
+            let mut order = Order::new(Settings::of(&editor), &editor, folder);
+            let written = order.writing.take_within(Duration::from_secs(10));
+            assert_eq!(
+                written.is_some_and(|it| it.is_ok_and(|it| it.is_err())),
+                is_told
+            );
+        }
+    }
+
+    #[test]
     fn an_order_outlives_the_program_and_one_that_has_ended_does_not() {
         let folder = tempfile::tempdir().expect("a folder");
         let editor = Editor::demo();
@@ -164,7 +190,7 @@ mod tests {
         let mut order = Order::new(settings.clone(), &editor, Some(folder.path()));
         let name = order.name.clone();
         let written = order.writing.take_within(Duration::from_mins(1));
-        assert_eq!(written, Some(Ok(())));
+        assert_eq!(written, Some(Ok(Ok(()))));
         assert!(
             Order::left_in(folder.path()).is_empty(),
             "its program still runs"

@@ -13,7 +13,7 @@ use crate::worker::ExportState;
 
 /// How long an export will still take; `None` before its first frame, and while it waits.
 pub fn seconds_left(state: &ExportState) -> Option<f64> {
-    let done = state.done.kept + state.done.written;
+    let done = state.done.so_far();
     let per_frame = state.busy.as_secs_f64() / state.done.written.max(1) as f64;
     let is_known = state.done.written > 0 && !state.is_paused;
     is_known.then_some((state.done.total - done) as f64 * per_frame)
@@ -22,7 +22,7 @@ pub fn seconds_left(state: &ExportState) -> Option<f64> {
 /// How much of an export is done, from 0 to 1, and in words.
 fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     let total = state.done.total;
-    let done = state.done.kept + state.done.written;
+    let done = state.done.so_far();
     let share = done as f64 / total.max(1) as f64;
     let busy = state.busy.as_secs_f64();
     let text = match (&state.ended, video) {

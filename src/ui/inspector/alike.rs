@@ -70,7 +70,7 @@ fn move_all(
             }
         };
         let light = |light: &mut Light| light.position = to(light.position);
-        edited(scene, *item, "position", (object, light))
+        Edit::of_item(scene, *item, "position", (object, light))
     });
     let edits = edits.chain(own).collect();
     Edit::Each(edits, format!("Move {} items", selected.len()))
@@ -181,14 +181,8 @@ pub fn chosen_for_all(
 
 /// The packs that are selected, and those that the selected objects wear, each once.
 pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
-    let packs = selected.iter().filter_map(|item| match item.kind {
-        Kind::Object => {
-            let object = scene.objects.get(item.index)?;
-            scene.color_packs.get_index_of(&object.color_pack)
-        }
-        Kind::Pack => Some(item.index),
-        Kind::Light => None,
-    });
+    let others = selected.iter().filter(|item| item.kind != Kind::Light);
+    let packs = others.filter_map(|item| scene.color_packs.get_index_of(item.color_pack(scene)?));
     packs.collect::<BTreeSet<_>>().into_iter()
 }
 
@@ -228,28 +222,6 @@ fn take<T: Clone + PartialEq>(own: &mut T, old: &T, new: &T) {
     }
 }
 
-/// The change of an item that does this to an object, and this to a light.
-fn edited(
-    scene: &Scene,
-    Item { kind, index }: Item,
-    field: &'static str,
-    (to_object, to_light): (impl FnOnce(&mut Object), impl FnOnce(&mut Light)),
-) -> Option<Edit> {
-    match kind {
-        Kind::Object => {
-            let mut object = scene.objects.get(index)?.clone();
-            to_object(&mut object);
-            Some(Edit::object(index, object, field))
-        }
-        Kind::Light => {
-            let mut light = scene.lights.get(index)?.clone();
-            to_light(&mut light);
-            Some(Edit::Light(index, light, field))
-        }
-        Kind::Pack => None,
-    }
-}
-
 /// The change of an item that makes it like an object that has changed.
 fn like_object(
     scene: &Scene,
@@ -268,7 +240,7 @@ fn like_object(
             take(&mut marker.color_pack, &old.color_pack, &new.color_pack);
         }
     };
-    edited(scene, item, field, (to_object, to_light))
+    Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
 /// The change of an item that makes it like a light that has changed.
@@ -292,7 +264,7 @@ fn like_light(
             _ => {}
         }
     };
-    edited(scene, item, field, (to_object, to_light))
+    Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
 /// `own` with those coordinates that have changed.

@@ -106,11 +106,7 @@ impl Quality {
             // Another one was chosen by hand meanwhile.
             return None;
         }
-        let markers = |scene: &Scene| scene.light_visualization;
-        let is_same = asked.scene.render == scene.render
-            && markers(&asked.scene) == markers(scene)
-            && asked.scene.has_same_things(scene);
-        if !is_same {
+        if !asked.scene.has_same_look(scene) {
             let scene = Arc::clone(scene);
             self.asked = Some(Asked { scene, ..asked });
             return Some(Outcome::Ask(Question::Quality(goal)));

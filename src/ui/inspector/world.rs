@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     }
 }
 
-/// Size and depth of the still picture.
+/// The size of the still picture, and how it is traced.
 pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     let scene = editor.shown();
     title(ui, icons::IMAGE, "Picture");

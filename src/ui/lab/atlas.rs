@@ -8,8 +8,8 @@ use super::heat;
 use super::ramp;
 use super::rates;
 use crate::image::Image;
-use crate::lab::capitalised;
 use crate::lab::stability::{Map, number};
+use crate::words::capitalised;
 
 /// Width of the figure, in points, and pixels per point.
 const WIDTH: f32 = 800.0;

@@ -4,20 +4,21 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{Align, Button, Key, Layout, Response, RichText, ScrollArea, Ui};
+use egui::{Align, Key, Layout, Response, ScrollArea, Ui};
 
 use super::super::requests::UiRequests;
-use super::super::theme::{GRID, ROW, palette};
+use super::super::theme::{GRID, ROW};
 use super::super::viewport::Place;
 use super::chart::Chart;
 use super::comparison::{Comparison, Face};
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
 use super::stability::Stability;
 use crate::editor::Editor;
-use crate::files::processor;
 use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
+use crate::machine::processor;
 use crate::scene::{Render, Scene};
 use crate::trace::Threads;
+use crate::ui::prompts::primary;
 use crate::words::counted;
 use crate::worker::Background;
 
@@ -161,11 +162,17 @@ impl Lab {
             ui.request_repaint_after(LOOK);
         }
         if let Some(Ok(Some(study))) = study {
-            self.study = Some(Box::new(study));
-            self.chosen = None;
-            self.number += 1;
-            self.name = editor.stem();
+            self.take_up(Some(Box::new(study)), editor.stem());
         }
+    }
+
+    /// Shows another study, or none, of a document of this name.
+    fn take_up(&mut self, study: Option<Box<Study>>, name: String) {
+        (self.study, self.name) = (study, name);
+        self.chosen = None;
+        self.number += 1;
+        self.notice = "";
+        self.found = Background::default();
     }
 
     /// Whether a dot is looked at in place of the live view.
@@ -197,10 +204,7 @@ impl Lab {
 
     /// Forgets what was measured: it was of another document. What it asks of the render thread.
     pub fn forget(&mut self) -> Option<LabRequest> {
-        (self.study, self.chosen) = (None, None);
-        self.number += 1;
-        self.notice = "";
-        self.found = Background::default();
+        self.take_up(None, String::new());
         std::mem::take(&mut self.is_running).then_some(LabRequest::Stop)
     }
 
@@ -251,12 +255,7 @@ impl Lab {
             study = study.with_povray();
         }
         let study = Box::new(study);
-        self.found = Background::default();
-        self.notice = "";
-        self.study = Some(study.clone());
-        self.chosen = None;
-        self.number += 1;
-        self.name = editor.stem();
+        self.take_up(Some(study.clone()), editor.stem());
         self.is_running = true;
         LabRequest::Measure(study)
     }
@@ -269,10 +268,7 @@ impl Lab {
             ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
             ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off. The demo takes half a minute.");
             ui.add_space(GRID);
-            let colors = palette(ui.ctx());
-            let text = RichText::new("Measure the scene").color(colors.on_accent);
-            let start = ui.add(Button::new(text).fill(colors.accent));
-            if start.clicked() {
+            if primary(ui, "Measure the scene").clicked() {
                 wish = Some(self.measure(editor));
             }
         });

@@ -10,6 +10,7 @@ use crate::ui::icons;
 use crate::ui::inspector::name_field;
 use crate::ui::prompts::select_letters;
 use crate::ui::requests::UiRequests;
+use crate::ui::rows::to_bytes;
 use crate::ui::theme::{ROW, palette};
 
 /// Letters that a row has room for, about.
@@ -17,16 +18,13 @@ const LONG: usize = 18;
 
 /// The colour of an object or a pack: the matte one, or that without light where there is none.
 pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
-    let pack = match item.kind {
-        Kind::Light => return None,
-        Kind::Object => scene
-            .color_packs
-            .get(&scene.objects.get(item.index)?.color_pack)?,
-        Kind::Pack => scene.color_packs.get_index(item.index)?.1,
-    };
+    let name = item
+        .color_pack(scene)
+        .filter(|_| item.kind != Kind::Light)?;
+    let pack = scene.color_packs.get(name)?;
     let is_matte = pack.diffuse.abs().max_element() > 0.0;
     let color = if is_matte { pack.diffuse } else { pack.ambient };
-    let [red, green, blue] = color.to_array().map(|channel| channel.round() as u8);
+    let [red, green, blue] = to_bytes(color);
     Some(Color32::from_rgb(red, green, blue))
 }
 

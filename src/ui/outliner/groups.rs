@@ -38,31 +38,28 @@ impl GroupRows {
             return None;
         }
         let scene = editor.shown();
-        let members = || group.members.iter().map(|index| Item::object(*index));
-        let is_seen = |index: &usize| scene.objects.get(*index).is_some_and(|o| o.visible);
-        let is_bright = group.members.iter().any(is_seen);
+        let is_seen = |item: Item| item.is_visible(scene) == Some(true);
+        let is_bright = group.items().any(is_seen);
         let (rect, eye) = row(ui).split_left_right_at_x(ui.max_rect().right() - ROW - GRID / 2.0);
         let (fold, rect) = rect.split_left_right_at_x(rect.left() + ROW);
-        self.fold_button(ui, fold, &group.name);
+        let is_folded = self.fold_button(ui, fold, &group.name);
         let look = RowStyle {
             icon: icons::GROUP,
             is_bright,
             is_selected,
         };
         let response = entry(ui, rect, look, &group.name);
-        let all = || Action::Select(Selection::all(members()));
         if response.clicked() {
-            let selected = selected_with(ui, editor.selection(), members());
+            let selected = selected_with(ui, editor.selection(), group.items());
             out.actions.push(Action::Select(selected));
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());
         }
-        let is_folded = self.folded.contains(&group.name);
         take_dropped_on_group(ui, editor, &response, (group, is_folded), out);
         response.context_menu(|ui| {
             if !is_selected {
-                out.actions.push(all());
+                out.select(Selection::all(group.items()));
             }
             for (text, command) in ITEM_COMMANDS {
                 if command != Command::Rename {
@@ -75,7 +72,8 @@ impl GroupRows {
         ui.scope_builder(UiBuilder::new().max_rect(eye), |ui| {
             if eye_button(ui, is_bright, &group.name) {
                 let verb = if is_bright { "Hide" } else { "Show" };
-                let edits = members().filter_map(|item| Edit::visible(scene, item, !is_bright));
+                let edits = group.items();
+                let edits = edits.filter_map(|item| Edit::visible(scene, item, !is_bright));
                 let label = format!("{verb} {}", group.name);
                 out.edit(Edit::Each(edits.collect(), label));
             }
@@ -83,24 +81,25 @@ impl GroupRows {
         Some(response)
     }
 
-    fn fold_button(&mut self, ui: &mut Ui, rect: Rect, name: &str) {
+    /// Folds and unfolds; whether it was folded.
+    fn fold_button(&mut self, ui: &mut Ui, rect: Rect, name: &str) -> bool {
         let is_folded = self.folded.iter().any(|folded| folded == name);
         let (icon, verb) = if is_folded {
-            (icons::FORTH, "Unfold")
+            (icons::FORWARD, "Unfold")
         } else {
             (icons::MORE, "Fold")
         };
         let button = ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
             icons::button(ui, icon, &format!("{verb} {name}"))
         });
-        if !button.inner.clicked() {
-            return;
+        if button.inner.clicked() {
+            if is_folded {
+                self.folded.retain(|folded| folded != name);
+            } else {
+                self.folded.push(name.to_owned());
+            }
         }
-        if is_folded {
-            self.folded.retain(|folded| folded != name);
-        } else {
-            self.folded.push(name.to_owned());
-        }
+        is_folded
     }
 
     fn rename(&mut self, ui: &mut Ui, editor: &Editor, group: &Group, out: &mut UiRequests) {

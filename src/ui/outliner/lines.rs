@@ -27,6 +27,13 @@ pub struct Group {
     pub members: Vec<usize>,
 }
 
+impl Group {
+    /// Its members.
+    pub fn items(&self) -> impl ExactSizeIterator<Item = Item> + Clone {
+        self.members.iter().map(|&index| Item::object(index))
+    }
+}
+
 /// What stands in the list of objects where some are in groups.
 #[derive(Clone, Copy, Debug)]
 enum Row {
@@ -168,9 +175,7 @@ impl Lines<'_> {
         }
         None
     }
-}
 
-impl Lines<'_> {
     /// How many entries of a group are listed.
     pub fn listed(&self, kind: Kind) -> usize {
         let mut groups = self.0.iter();

@@ -182,8 +182,8 @@ impl Outliner {
             }
             Some(Line::Group(place)) => {
                 let group = &listed.groups[place];
-                let mut members = group.members.iter().map(|&index| Item::object(index));
-                let is_selected = members.all(|member| listed.is_marked(editor, member));
+                let is_marked = |member| listed.is_marked(editor, member);
+                let is_selected = group.items().all(is_marked);
                 let row = (group, is_selected);
                 if let Some(response) = self.group_rows.show(ui, editor, row, out) {
                     self.walk.attend(ui, index, &response);

@@ -155,10 +155,7 @@ impl Listed<'_> {
         let is_member = |row| matches!(self.lines.get(row), Some(Line::Entry(_, true)));
         let entries = |row| match self.lines.get(row) {
             Some(Line::Entry(item, _)) => vec![item],
-            Some(Line::Group(place)) if !is_member(row + 1) => {
-                let members = self.groups[place].members.iter();
-                members.map(|index| Item::object(*index)).collect()
-            }
+            Some(Line::Group(place)) if !is_member(row + 1) => self.groups[place].items().collect(),
             _ => Vec::new(),
         };
         let rows = one.min(other)..=one.max(other);
@@ -177,10 +174,7 @@ impl Listed<'_> {
         Some(match self.lines.get(row)? {
             Line::Single(selection, ..) => selection.clone(),
             Line::Entry(item, _) => Selection::all([item]),
-            Line::Group(place) => {
-                let members = self.groups[place].members.iter();
-                Selection::all(members.map(|index| Item::object(*index)))
-            }
+            Line::Group(place) => Selection::all(self.groups[place].items()),
             Line::Kind(..) => return None,
         })
     }

@@ -168,7 +168,7 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
                 .filter_map(|near| motions.get(near));
             here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
         };
-        let CameraChange { distance, turn } = motions[index];
+        let CameraChange { distance, turn, .. } = motions[index];
         let distance = if distance > noise { distance } else { 0.0 };
         let turn = if turn > NOISE_TURN { turn } else { 0.0 };
         let is_jump = is_jump(|m| m.distance, mean_distance.max(noise))

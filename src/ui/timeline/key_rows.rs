@@ -7,7 +7,7 @@ use egui::{PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use super::key_menu::menu;
 use super::ruler::playhead;
 use super::scale::Scale;
-use super::strip::{KEY, band, diamond, label};
+use super::strip::{KEY, band, diamond, held, label, picked};
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hinted as _;
@@ -24,11 +24,11 @@ const FEW: usize = 64;
 #[derive(Default)]
 pub struct KeyRows {
     drag: Option<Drag>,
-    frame: Option<Frame>,
+    frame: Option<Marquee>,
 }
 
-/// A frame around keys, as it is drawn.
-struct Frame {
+/// A rectangle around keys, as it is drawn.
+struct Marquee {
     /// Where no key was, when it began.
     from: Pos2,
     /// What was selected then.
@@ -72,7 +72,7 @@ impl KeyRows {
 
     /// Gives up what the pointer does.
     pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
-        if let Some(Frame { before, .. }) = self.frame.take()
+        if let Some(Marquee { before, .. }) = self.frame.take()
             && before != *editor.selection()
         {
             out.select(before);
@@ -131,7 +131,7 @@ impl KeyRows {
         if response.drag_started_by(PointerButton::Primary) {
             let (from, adds) =
                 ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
-            self.frame = from.map(|from| Frame {
+            self.frame = from.map(|from| Marquee {
                 from,
                 before: editor.selection().clone(),
                 adds,
@@ -236,20 +236,10 @@ impl KeyRows {
             out.select(Keys::from([place]));
         }
         if response.clicked() {
-            let mut places = selected.clone();
-            if !modifiers.shift {
-                places = Keys::from([place]);
-            } else if !places.remove(&place) {
-                places.insert(place);
-            }
-            out.select(places);
+            out.select(picked(selected, place, modifiers.shift));
         }
         if response.drag_started() {
-            let places = if selected.contains(&place) {
-                selected.clone()
-            } else {
-                Keys::from([place])
-            };
+            let places = held(selected, place);
             // What was done before is none of it, and stays where it is taken back.
             out.actions.push(Action::BeginGesture);
             self.drag = Some(Drag {
@@ -279,7 +269,8 @@ impl KeyRows {
         }
         // Out of the window, it waits where it was.
         let Some(at) = at else { return };
-        let to = nearest_frame(scale.time(at.x), &held.before);
+        let before = &held.before;
+        let to = before.time_of(before.nearest_frame(scale.time(at.x)));
         let later = to - held.from;
         let (moved, new) = held.before.with_moved(&held.places, later, held.are_copies);
         if moved != *editor.scene().animation {
@@ -337,7 +328,7 @@ impl KeyRows {
     }
 }
 
-impl Frame {
+impl Marquee {
     /// From where it began to the pointer.
     fn around(&self, ui: &Ui) -> Option<Rect> {
         let to = ui.input(|input| input.pointer.latest_pos())?;
@@ -359,10 +350,4 @@ fn ways<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
         ui.painter()
             .hline(span, rect.center().y, Stroke::new(width, color));
     }
-}
-
-/// The time of the frame that is nearest to a time.
-fn nearest_frame(time: f64, animation: &Animation) -> f64 {
-    let fps = animation.frames_per_second;
-    (time.max(0.0) * fps).round() / fps
 }

@@ -2,9 +2,9 @@
 
 mod scale;
 
-mod overlay;
-
 mod strip;
+
+mod overlay;
 
 mod ruler;
 
@@ -16,11 +16,13 @@ mod graph;
 
 mod thumbs;
 
+mod length;
+
 mod transport;
 
 use std::sync::Arc;
 
-use egui::{InputState, Key, Modifiers, Rect, ScrollArea, Ui};
+use egui::{Rect, ScrollArea, Ui};
 
 use self::graph::Graph;
 use self::key_rows::KeyRows;
@@ -28,7 +30,7 @@ pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 pub use self::transport::{actions, clock};
-use super::commands::{Command, with_key};
+use super::commands::{Command, take_escape, with_key};
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::animate::paused_seconds;
@@ -137,8 +139,7 @@ impl TimelinePanel {
             end: self.span.1,
         };
         self.zoom(ui, (&scale, area), end);
-        let gives_up = |input: &mut InputState| input.consume_key(Modifiers::NONE, Key::Escape);
-        if self.rows.is_busy() && ui.input_mut(gives_up) {
+        if self.rows.is_busy() && take_escape(ui) {
             self.rows.give_up(editor, out);
         }
         // What time it is stays in sight, however many rows there are.

@@ -6,8 +6,9 @@ use egui::{Color32, Context, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
+use super::strip::{held, picked};
 use crate::editor::{Action, Edit, Editor};
-use crate::scene::{Camera, KeyPlace, Keys, Projection};
+use crate::scene::{Camera, KeyPlace, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{Palette, in_picture};
 use crate::ui::tools::Screen;
@@ -184,7 +185,8 @@ impl Overlay {
         self.dragged.is_some()
     }
 
-    /// A key is clicked to be selected, and dragged in the plane of the view; Esc takes that back.
+    /// A key is clicked to be selected, with Shift besides others, and dragged in the plane of the view with all that is
+    /// selected; Esc takes that back.
     fn handle(
         &mut self,
         ui: &Ui,
@@ -208,14 +210,18 @@ impl Overlay {
         let response = ui.interact(near, id, Sense::click_and_drag());
         let name = format!("Key {} in the view", place + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-        let own = Keys::from([KeyPlace::of_camera(place)]);
+        let (selected, own) = (editor.selection().keys(), KeyPlace::of_camera(place));
         if response.clicked() {
-            out.select(own.clone());
+            out.select(picked(
+                selected,
+                own,
+                ui.input(|input| input.modifiers.shift),
+            ));
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             let (origin, direction) = screen.ray(at);
             self.dragged = Some((place, (position - origin).dot(direction)));
-            out.select(own.clone());
+            out.select(held(selected, own));
         }
         let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == place) else {
             return;
@@ -234,8 +240,8 @@ impl Overlay {
         let (origin, direction) = screen.ray(pointer);
         let depth = depth * before.dot(straight) / direction.dot(straight);
         self.dragged = Some((dragged, depth));
-        let to = origin + direction * depth;
-        let moved = animation.with_each(&own, |key| key.value.position = to);
+        let by = origin + direction * depth - position;
+        let moved = animation.with_each(&held(selected, own), |key| key.value.position += by);
         out.edit(Edit::animation(moved, "Move key in the view"));
     }
 }

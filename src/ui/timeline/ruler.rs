@@ -13,8 +13,8 @@ const APART: f32 = 64.0;
 /// Least room between two marks of frames.
 const FRAME_APART: f32 = 4.0;
 /// Steps of written times, in seconds.
-const STEPS: [f64; 11] = [
-    0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0,
+const STEPS: [f64; 13] = [
+    0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0, 14_400.0, 43_200.0,
 ];
 
 /// Seconds, frames, and the playhead, which follows the pointer.

@@ -3,6 +3,7 @@
 use egui::{Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
+use crate::scene::{KeyPlace, Keys, without_number};
 use crate::ui::theme::{GRID, TRACK, palette};
 
 /// Half the width of a key.
@@ -45,10 +46,27 @@ pub fn label(ui: &Ui, rect: Rect, text: &str) {
 /// Where a name ends that may have a number, and its property behind it.
 fn end_of_name(text: &str) -> usize {
     let end = text.rfind(": ").unwrap_or(text.len());
-    let is_number = |word: &str| word.bytes().all(|letter| letter.is_ascii_digit());
-    match text[..end].rsplit_once(' ') {
-        Some((name, number)) if is_number(number) => name.len(),
-        _ => end,
+    without_number(&text[..end]).len()
+}
+
+/// What is selected by a click on a key: with `adds`, it is selected beside the others, or no more.
+pub fn picked(selected: &Keys, place: KeyPlace, adds: bool) -> Keys {
+    if !adds {
+        return Keys::from([place]);
+    }
+    let mut places = selected.clone();
+    if !places.remove(&place) {
+        places.insert(place);
+    }
+    places
+}
+
+/// What a drag of a key is of: all that is selected, if it is among it.
+pub fn held(selected: &Keys, place: KeyPlace) -> Keys {
+    if selected.contains(&place) {
+        selected.clone()
+    } else {
+        Keys::from([place])
     }
 }
 

@@ -166,10 +166,7 @@ impl Thumbs {
 
 /// Whether pictures of the keys of one are those of the other. The camera of the view is in none of them.
 fn shows_same(one: &Scene, other: &Scene) -> bool {
-    one.has_same_things(other)
-        && one.light_visualization == other.light_visualization
-        && one.render == other.render
-        && Arc::ptr_eq(&one.animation, &other.animation)
+    one.has_same_look(other) && Arc::ptr_eq(&one.animation, &other.animation)
 }
 
 /// The lower right corner of the view.

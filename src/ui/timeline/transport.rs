@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Button, Id, PopupCloseBehavior, RichText, Slider, Ui};
 
-use crate::animate::{longest_flight, stretched};
+use super::length::show_length;
 use crate::editor::{Action, Edit, Editor, Repeat, Time, replaced_flight};
 use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::{Command, with_key};
@@ -23,8 +23,6 @@ const WIDE: f32 = 1040.0;
 const NARROW: f32 = 860.0;
 /// Width of a window in which buttons have words beside their symbols, in points.
 const TINY: f32 = 720.0;
-/// The shortest flight that is asked for, in seconds.
-const SHORTEST: f64 = 0.1;
 /// Seconds that a ready-made flight takes.
 const PRESET_SECONDS: f64 = 8.0;
 /// Samples of a recording of a minute or two.
@@ -48,7 +46,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         (icons::PLAY, "Play")
     };
     press(ui, icon, name, Command::Play);
-    press(ui, icons::FORTH, "One frame on", Command::FrameOn);
+    press(ui, icons::FORWARD, "One frame on", Command::FrameOn);
     press(ui, icons::NEXT, "Next key", Command::NextKey);
     press(ui, icons::LAST, "Last frame", Command::LastFrame);
     let (icon, name, next) = match timeline.repeat {
@@ -201,7 +199,7 @@ fn rates(
     ui.toggle_value(graph, "Speed")
         .hint("Show speed and turn rate below the keys");
     let animation = &editor.scene().animation;
-    length(ui, editor, number, out);
+    show_length(ui, editor, number, out);
     let mut fps = animation.frames_per_second;
     let field = Field {
         name: "frames per second",
@@ -232,35 +230,6 @@ fn rates(
     number(ui, &field, &mut speed);
     if speed != before {
         out.time(Time::Speed(speed));
-    }
-}
-
-/// How long the flight of the camera is; another length stretches it.
-fn length(
-    ui: &mut Ui,
-    editor: &Editor,
-    number: impl Fn(&mut Ui, &Field, &mut f64),
-    out: &mut UiRequests,
-) {
-    let animation = &editor.scene().animation;
-    let [first, .., last] = &animation.keys[..] else {
-        return;
-    };
-    let before = last.time - first.time;
-    let mut seconds = before;
-    let field = Field {
-        name: "length of the flight",
-        hint: "Length of the flight; another one stretches it, and the keys of values with it",
-        unit: " s",
-        default: before,
-        // Keys of values that are far behind it may leave it less.
-        range: SHORTEST..=longest_flight(animation).max(SHORTEST),
-        speed: Some(0.05),
-    };
-    number(ui, &field, &mut seconds);
-    if seconds != before {
-        out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
-        out.time(Time::Stretched(first.time, seconds / before));
     }
 }
 
@@ -410,6 +379,10 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
         }
         Command::Preset(preset) => {
             let keys = preset.keys(&editor.shown().camera, editor.middle(), PRESET_SECONDS);
+            if keys.windows(2).all(|pair| pair[0].value == pair[1].value) {
+                let told = "Nothing moves in this flight from here: look from a side first";
+                return vec![Action::Tell(told.to_owned())];
+            }
             let changed = Animation {
                 keys,
                 take: None,
@@ -430,7 +403,12 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
                 let told = "This changes nothing of the flight as it is";
                 return vec![Action::Tell(told.to_owned())];
             }
-            vec![Action::Edit(Edit::animation(changed, retime.words().0))]
+            // Where the flight has ended by then, nothing is left to be seen.
+            let end = changed.duration();
+            let edit = Action::Edit(Edit::animation(changed, retime.words().0));
+            let is_behind = editor.timeline().playhead > end;
+            let back = is_behind.then_some(Action::Time(Time::Seek(end)));
+            [edit].into_iter().chain(back).collect()
         }
         _ => Vec::new(),
     }

@@ -12,6 +12,7 @@ use super::subject::Subject;
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
+use crate::ui::commands::take_escape;
 use crate::ui::flying::drag_of;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -73,9 +74,10 @@ impl View<'_> {
     /// What the camera is moved around: the middle of what is selected, if that is in the picture, or the
     /// point at a place of it.
     fn pivot(&self, sight: &Sight, at: Pos2) -> DVec3 {
-        let selected = Subject::of(self.editor.selection(), self.editor.shown());
-        let has_end = selected.iter().all(|subject| subject.bounds().is_some());
-        let middle = Subject::middle_of(&selected).filter(|middle| {
+        let (selection, scene) = (self.editor.selection(), self.editor.shown());
+        let mut selected = Subject::of(selection, scene).into_iter();
+        let has_end = selected.all(|subject| subject.bounds().is_some());
+        let middle = selection.middle(scene).filter(|middle| {
             let place = self.screen.place(*middle);
             has_end && place.is_some_and(|place| self.place.rect.contains(place))
         });
@@ -109,8 +111,9 @@ impl Drag {
         let editor = view.editor;
         if let Some(handle) = handle {
             let before = Subject::of(editor.selection(), editor.shown());
-            return Grip::new(&view.screen, before, handle, at)
-                .map(|grip| Self::Grip(Box::new(grip)));
+            let held = (before, editor.selection().pivot(editor.shown())?);
+            let grip = Grip::new(&view.screen, held, handle, at)?;
+            return Some(Self::Grip(Box::new(grip)));
         }
         if editor.looks_through() || editor.timeline().is_playing {
             return Some(Self::Orbit(view.pivot(sight, at)));
@@ -126,8 +129,9 @@ impl Drag {
                 out.actions.push(Action::Select(selected.clone()));
             }
             let before = Subject::of(&selected, editor.shown());
-            let grip = Grip::body(before, at, view.point_at(sight, at));
-            return grip.map(|grip| Self::Grip(Box::new(grip)));
+            let held = (before, selected.pivot(editor.shown())?);
+            let grip = Grip::body(held, at, view.point_at(sight, at));
+            return Some(Self::Grip(Box::new(grip)));
         }
         Some(if is_shifted {
             Self::Frame(at, editor.selection().clone())
@@ -153,8 +157,7 @@ impl Drag {
         response: &Response,
         out: &mut UiRequests,
     ) -> bool {
-        let is_cancelled =
-            ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape));
+        let is_cancelled = take_escape(ui);
         let pointer = ui.input(|input| input.pointer.interact_pos());
         if is_cancelled {
             out.actions.push(Action::CancelGesture);

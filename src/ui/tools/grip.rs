@@ -45,9 +45,13 @@ pub struct Pull {
 }
 
 impl Grip {
-    /// Grabs a handle of these things at a place on the screen.
-    pub fn new(screen: &Screen, before: Vec<Subject>, handle: Handle, at: Pos2) -> Option<Self> {
-        let middle = Subject::pivot_of(&before)?;
+    /// Grabs a handle of these things, which are turned about this point, at a place on the screen.
+    pub fn new(
+        screen: &Screen,
+        (before, middle): (Vec<Subject>, DVec3),
+        handle: Handle,
+        at: Pos2,
+    ) -> Option<Self> {
         let mut grip = Self {
             handle,
             before,
@@ -60,16 +64,16 @@ impl Grip {
         Some(grip)
     }
 
-    /// Takes hold of these things where one of them was pointed at.
-    pub fn body(before: Vec<Subject>, at: Pos2, point: DVec3) -> Option<Self> {
-        Some(Self {
+    /// Takes hold of these things, which are turned about this point, where one of them was pointed at.
+    pub fn body((before, middle): (Vec<Subject>, DVec3), at: Pos2, point: DVec3) -> Self {
+        Self {
             handle: Handle::Free,
-            middle: Subject::pivot_of(&before)?,
             before,
+            middle,
             from: (at, point),
             typed: String::new(),
             turned: Cell::default(),
-        })
+        }
     }
 
     /// Whether a number can be typed in place of a pull.
@@ -340,7 +344,7 @@ mod tests {
     use egui::{Rect, pos2, vec2};
 
     use super::*;
-    use crate::editor::Item;
+    use crate::editor::{Item, Selection};
     use crate::scene::Scene;
 
     #[test]
@@ -372,15 +376,15 @@ mod tests {
         let scene = Scene::demo();
         let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(1000.0, 1000.0));
         let screen = Screen::new(&scene.camera, view).expect("a view");
-        let ball = |index| Subject::new(&scene, Item::object(index)).expect("a ball");
-        let both = vec![ball(0), ball(1)];
-        let middle = screen.place(Subject::middle_of(&both).expect("a middle"));
+        let both = Selection::all([Item::object(0), Item::object(1)]);
+        let centre = both.middle(&scene).expect("a middle");
+        let (both, middle) = (Subject::of(&both, &scene), screen.place(centre));
         // It circles as a clock does, seen from where the axis comes from.
         let at = |degrees: f32| {
             let angle = -degrees.to_radians();
             middle.expect("in front") + vec2(angle.cos(), angle.sin()) * 100.0
         };
-        let grip = Grip::new(&screen, both, Handle::Turn(2), at(0.0)).expect("a ring");
+        let grip = Grip::new(&screen, (both, centre), Handle::Turn(2), at(0.0)).expect("a ring");
         let pulled = |degrees: f32| {
             let pull = Pull {
                 at: at(degrees),

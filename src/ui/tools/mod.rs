@@ -35,6 +35,7 @@ use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
 use crate::image::{ObjectMap, Thing};
 use crate::scene::{Camera, Framing, Projection, around};
+use crate::words::shortened;
 
 /// Seconds that the pointer rests before it is told what it is over.
 const PATIENCE: f32 = 0.3;
@@ -306,10 +307,7 @@ impl Tools {
             return;
         };
         if rests >= PATIENCE {
-            let is_long = name.chars().count() > LONGEST;
-            let start: String = name.chars().take(LONGEST).collect();
-            let end = if is_long { "…" } else { "" };
-            label(&view.painter, at, &format!("{start}{end}"));
+            label(&view.painter, at, &shortened(name, LONGEST));
         } else {
             ui.request_repaint_after_secs(PATIENCE - rests);
         }

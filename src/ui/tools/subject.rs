@@ -30,20 +30,6 @@ impl Subject {
         items.filter_map(|item| Self::new(scene, *item)).collect()
     }
 
-    /// The middle of all.
-    pub fn middle_of(subjects: &[Self]) -> Option<DVec3> {
-        let sum: DVec3 = subjects.iter().map(Self::middle).sum();
-        (!subjects.is_empty()).then(|| sum / subjects.len() as f64)
-    }
-
-    /// What all are turned about, see [`Selection::pivot`].
-    pub fn pivot_of(subjects: &[Self]) -> Option<DVec3> {
-        match subjects {
-            [Self::Object(_, object)] => Some(object.shape.pivot()),
-            _ => Self::middle_of(subjects),
-        }
-    }
-
     /// The box around it, if it ends.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         match self {

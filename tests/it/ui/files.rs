@@ -8,6 +8,7 @@ use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glint::editor::{Editor, excerpt};
 use glint::export::povray_text;
+use glint::files::Stamp;
 use glint::scene::{Document, Recovery, Scene, Shape};
 use glint::ui::Ask;
 
@@ -39,11 +40,7 @@ fn a_scene_is_saved_and_opened_through_dialogs() {
     assert_eq!(harness.scene(), &saved.scene);
     harness.choose("File", "Open example");
     harness.click("demo");
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "File")
-        .click();
-    harness.settle();
+    harness.press_button("File");
     harness.window.get_by_label_contains("Open recent").click();
     harness.settle();
     harness.click("mine.ron");
@@ -755,6 +752,36 @@ fn a_file_that_is_gone_is_told_and_what_is_open_counts_as_unsaved() {
         radius(&Document::load(&path).expect("saved").scene, 0),
         20.0
     );
+}
+
+#[test]
+fn a_file_that_another_program_has_broken_is_told_and_what_is_open_counts_as_unsaved() {
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&demo_text(20.0)));
+    let path = harness.folder.path().join("given.ron");
+    std::fs::write(&path, "Scene(").expect("written");
+    harness.wait_for("the message", |harness| harness.sees("given.ron:1"));
+    assert!(harness.editor().is_dirty());
+    // It is gone, which is said in place of that; and whole again.
+    std::fs::remove_file(&path).expect("removed");
+    harness.wait_for("the message", |harness| harness.sees("not there any more"));
+    assert!(!harness.sees("given.ron:1"));
+    std::fs::write(&path, demo_text(20.0)).expect("written");
+    harness.wait_for("the file again", |harness| !harness.editor().is_dirty());
+    assert!(!harness.sees("not there any more"));
+}
+
+#[test]
+fn what_comes_after_a_broken_file_is_not_replaced_unseen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.ron");
+    std::fs::write(&path, demo_text(20.0)).expect("written");
+    let mut editor = Editor::demo();
+    editor.open(Document::load_stamped(&path).expect("valid"), &path);
+    std::fs::write(&path, "Scene(").expect("written");
+    editor.keep_mine(None, Stamp::read(&path));
+    assert!(editor.is_dirty() && !editor.is_changed_outside());
+    std::fs::write(&path, demo_text(31.5)).expect("written");
+    assert!(editor.is_changed_outside() && editor.would_lose(&path));
 }
 
 #[test]

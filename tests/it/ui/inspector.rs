@@ -102,11 +102,7 @@ fn a_vector_is_pasted_whole_and_a_label_resets() {
 #[test]
 fn invalid_edits_are_refused_and_explained() {
     let mut harness = EditorHarness::new();
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "Camera")
-        .click();
-    harness.settle();
+    harness.press_button("Camera");
     harness.type_into("up x", "-0.25, -0.25, -0.93");
     assert_eq!(harness.scene(), &Scene::demo());
     harness
@@ -139,11 +135,7 @@ fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
 #[test]
 fn a_label_brings_the_default_back() {
     let mut harness = EditorHarness::new();
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "Camera")
-        .click();
-    harness.settle();
+    harness.press_button("Camera");
     harness.type_into("up x", "0.5, 0.5, 0.5");
     harness.double_click("up");
     assert_eq!(harness.scene(), &Scene::demo());

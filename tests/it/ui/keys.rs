@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
 
-use super::tools::{drop_at, hover, pull};
+use super::tools::{click, drag, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
 use crate::timeline::{animation, times};
 
@@ -153,7 +153,18 @@ fn a_time_that_is_dragged_passes_other_keys_and_leaves_them() {
 
 #[test]
 fn escape_takes_the_drag_of_a_key_back() {
+    give_up_a_drag(Modifiers::NONE);
+}
+
+#[test]
+fn escape_takes_the_copy_of_a_key_back() {
+    give_up_a_drag(CTRL);
+}
+
+/// With these keys held all along.
+fn give_up_a_drag(held: Modifiers) {
     let mut harness = window(&[0.0, 1.0, 2.0]);
+    harness.window.event(Event::ModifiersChanged(held));
     let from = harness
         .window
         .get_by_role_and_label(Role::Button, "Key 2")
@@ -168,7 +179,7 @@ fn escape_takes_the_drag_of_a_key_back() {
         harness.window.step();
     }
     assert_ne!(times(&harness), [0.0, 1.0, 2.0]);
-    harness.window.key_press(Key::Escape);
+    harness.window.key_press_modifiers(held, Key::Escape);
     harness.window.step();
     harness.window.hover_at(from + egui::vec2(120.0, 0.0));
     harness.window.step();
@@ -176,6 +187,46 @@ fn escape_takes_the_drag_of_a_key_back() {
     harness.settle();
     assert_eq!(times(&harness), [0.0, 1.0, 2.0]);
     assert_eq!(harness.editor().undo_label(), None);
+}
+
+#[test]
+fn all_selected_keys_are_dragged_in_the_view() {
+    let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
+    // From farther back the flight is in sight.
+    harness.window.key_down(Key::S);
+    (0..60).for_each(|_| harness.window.step());
+    harness.window.key_up(Key::S);
+    harness.settle();
+    let place = |harness: &EditorHarness, key: &str| {
+        let key = harness.window.get_by_label(key);
+        key.rect().center()
+    };
+    let first = place(&harness, "Key 1 in the view");
+    click(&mut harness, first, Modifiers::NONE);
+    let second = place(&harness, "Key 2 in the view");
+    click(&mut harness, second, Modifiers::SHIFT);
+    assert_eq!(harness.editor().selection().keys().len(), 2);
+    let before = harness.scene().animation.keys.clone();
+    let to = second - egui::vec2(0.0, 60.0);
+    let (with, held) = (PointerButton::Primary, Modifiers::NONE);
+    drag(&mut harness, second, to, with, held);
+    let after = harness.scene().animation.keys.clone();
+    let by = |key: usize| after[key].value.position - before[key].value.position;
+    assert!(by(0).length() > 5.0, "{:?}", by(0));
+    assert!((by(0) - by(1)).length() < 1e-9, "{:?}", by(1));
+}
+
+#[test]
+fn undo_of_a_stretch_brings_the_playhead_back() {
+    let mut harness = window(&[0.0, 2.0]);
+    let at = on_ruler(&harness, 1.0);
+    click(&mut harness, at, Modifiers::NONE);
+    let before = harness.editor().timeline().playhead;
+    assert!((before - 1.0).abs() < 0.1, "{before}");
+    harness.type_into("length of the flight", "4");
+    assert_eq!(harness.editor().timeline().playhead, 2.0 * before);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.editor().timeline().playhead, before);
 }
 
 #[test]
@@ -364,23 +415,21 @@ fn the_middle_button_moves_the_line_of_time_and_not_the_playhead() {
     let mut harness = window(&[0.0, 1.0, 2.0]);
     let before = harness.editor().timeline().playhead;
     let (from, to) = (on_ruler(&harness, 0.5), on_ruler(&harness, 1.5));
-    pull(
+    drag(
         &mut harness,
         from,
         to,
         PointerButton::Middle,
         Modifiers::NONE,
     );
-    drop_at(&mut harness, to, PointerButton::Middle, Modifiers::NONE);
     assert_eq!(harness.editor().timeline().playhead, before);
-    pull(
+    drag(
         &mut harness,
         from,
         to,
         PointerButton::Primary,
         Modifiers::NONE,
     );
-    drop_at(&mut harness, to, PointerButton::Primary, Modifiers::NONE);
     assert_ne!(harness.editor().timeline().playhead, before);
 }
 

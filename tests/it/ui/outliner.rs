@@ -1,6 +1,5 @@
 //! The outliner: filtering, hiding, renaming, adding.
 
-use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
@@ -76,14 +75,6 @@ fn where_groups_are_not_listed_nothing_is_dragged_into_one() {
     assert_eq!(harness.scene().objects[1].group, "pair");
 }
 
-/// The names of what is selected.
-fn selected(harness: &EditorHarness) -> Vec<&str> {
-    let items = harness.editor().selection().items().iter();
-    items
-        .filter_map(|item| item.name(harness.scene()))
-        .collect()
-}
-
 #[test]
 fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     let mut harness = EditorHarness::new();
@@ -91,12 +82,12 @@ fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     // With the pointer over the list, after a click there.
     let row = harness.window.get_by_label("Sphere 1").rect().center();
     click(&mut harness, row, Modifiers::NONE);
-    assert_eq!(selected(&harness), ["Sphere 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
     harness.press(Modifiers::NONE, Key::ArrowDown);
-    assert_eq!(selected(&harness), ["Sphere 2"]);
+    assert_eq!(harness.selected(), ["Sphere 2"]);
     harness.press(Modifiers::NONE, Key::ArrowUp);
     harness.press(Modifiers::NONE, Key::ArrowUp);
-    assert_eq!(selected(&harness), ["Light 2"], "over the title of a list");
+    assert_eq!(harness.selected(), ["Light 2"], "over the title of a list");
     // By the keys alone, from the row that has the focus: to the next one, and not to an eye.
     let picture = harness.view().center();
     hover(&mut harness, picture);
@@ -105,7 +96,7 @@ fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     harness.press(Modifiers::NONE, Key::ArrowDown);
     harness.press(Modifiers::NONE, Key::ArrowDown);
     assert!(harness.window.get_by_label("Triangle 1").is_focused());
-    assert_eq!(selected(&harness), ["Triangle 1"]);
+    assert_eq!(harness.selected(), ["Triangle 1"]);
     assert_eq!(harness.scene().camera, camera);
 }
 
@@ -119,17 +110,17 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
     harness.click("Fold Balls");
     let row = harness.window.get_by_label("Balls").rect().center();
     click(&mut harness, row, Modifiers::NONE);
-    assert_eq!(selected(&harness), ["Sphere 1", "Sphere 2"]);
+    assert_eq!(harness.selected(), ["Sphere 1", "Sphere 2"]);
     harness.press(Modifiers::NONE, Key::ArrowDown);
-    assert_eq!(selected(&harness), ["Triangle 1"]);
+    assert_eq!(harness.selected(), ["Triangle 1"]);
     harness.press(Modifiers::NONE, Key::ArrowUp);
     assert_eq!(
-        selected(&harness),
+        harness.selected(),
         ["Sphere 1", "Sphere 2"],
         "all of the group"
     );
     harness.press(Modifiers::NONE, Key::ArrowUp);
-    assert_eq!(selected(&harness), ["Light 2"]);
+    assert_eq!(harness.selected(), ["Light 2"]);
     // Of what is listed, whatever was walked to before.
     harness.window.get_by_label("Filter").focus();
     harness.window.get_by_label("Filter").type_text("triangle");
@@ -138,7 +129,7 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
     let row = harness.window.get_by_label("Triangle 3").rect().center();
     click(&mut harness, row, Modifiers::NONE);
     harness.press(Modifiers::NONE, Key::ArrowDown);
-    assert_eq!(selected(&harness), ["Triangle 4"]);
+    assert_eq!(harness.selected(), ["Triangle 4"]);
 }
 
 #[test]
@@ -170,19 +161,11 @@ fn a_name_that_was_edited_is_not_edited_in_the_next_scene() {
 fn everything_can_be_added() {
     let mut harness = EditorHarness::new();
     for (entry, count) in [("Add Sphere", 10), ("Add Plane", 11), ("Add Triangle", 12)] {
-        harness
-            .window
-            .get_by_role_and_label(Role::Button, "Add to scene")
-            .click();
-        harness.settle();
+        harness.press_button("Add to scene");
         harness.click(entry);
         assert_eq!(harness.scene().objects.len(), count);
     }
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "Add to scene")
-        .click();
-    harness.settle();
+    harness.press_button("Add to scene");
     harness.click("Add Light");
     assert_eq!(harness.scene().lights.len(), 3);
 }

@@ -1,6 +1,5 @@
 //! Keys: who gets them, and what Escape leaves.
 
-use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Theme};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
@@ -25,11 +24,7 @@ fn keys_do_nothing_while_a_text_is_edited() {
 fn escape_closes_an_open_menu_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::L);
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "File")
-        .click();
-    harness.settle();
+    harness.press_button("File");
     assert!(harness.window.query_by_label("Save as…").is_some());
     harness.press(Modifiers::NONE, Key::Escape);
     assert!(harness.window.query_by_label("Save as…").is_none());
@@ -178,11 +173,7 @@ fn the_finder_knows_what_menus_and_panels_do() {
 #[test]
 fn a_menu_closes_when_its_entry_is_chosen_by_a_key() {
     let mut harness = EditorHarness::new();
-    harness
-        .window
-        .get_by_role_and_label(Role::Button, "Edit")
-        .click();
-    harness.settle();
+    harness.press_button("Edit");
     harness.window.get_by_label("Select all").focus();
     harness.press(Modifiers::NONE, Key::Enter);
     assert!(harness.editor().selection().items().len() > 1);

@@ -72,7 +72,7 @@ pub fn drop_at(harness: &mut EditorHarness, at: Pos2, with: PointerButton, modif
     harness.settle();
 }
 
-fn drag(
+pub fn drag(
     harness: &mut EditorHarness,
     from: Pos2,
     to: Pos2,
@@ -87,28 +87,21 @@ pub fn center(scene: &Scene, object: usize) -> DVec3 {
     scene.objects[object].shape.position()
 }
 
-fn names(harness: &EditorHarness) -> Vec<&str> {
-    let items = harness.editor().selection().items().iter();
-    items
-        .filter_map(|item| item.name(harness.scene()))
-        .collect()
-}
-
 #[test]
 fn a_click_selects_what_is_seen_there() {
     let mut harness = EditorHarness::new();
     let ball = place(&harness, center(harness.scene(), 0));
     click(&mut harness, ball, NONE);
-    assert_eq!(names(&harness), ["Sphere 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
     assert_eq!(
         *harness.editor().selection(),
         Selection::from(Item::object(0))
     );
     let lamp = place(&harness, harness.scene().lights[0].position);
     click(&mut harness, lamp, SHIFT);
-    assert_eq!(names(&harness), ["Sphere 1", "Light 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1", "Light 1"]);
     click(&mut harness, ball, SHIFT);
-    assert_eq!(names(&harness), ["Light 1"]);
+    assert_eq!(harness.selected(), ["Light 1"]);
     let sky = place(&harness, DVec3::new(60.0, 190.0, -300.0));
     click(&mut harness, sky, NONE);
     assert_eq!(*harness.editor().selection(), Selection::Camera);
@@ -124,7 +117,7 @@ fn alt_click_selects_what_is_behind() {
     let at = front + (back - front) * 0.41;
     for expected in ["Sphere 1", "Plane", "Sphere 2", "Sphere 1"] {
         click(&mut harness, at, Modifiers::ALT);
-        assert_eq!(names(&harness), [expected]);
+        assert_eq!(harness.selected(), [expected]);
     }
 }
 
@@ -135,7 +128,7 @@ fn a_body_is_dragged_in_one_step_and_escape_takes_it_back() {
     let from = place(&harness, before);
     let to = from + vec2(60.0, -30.0);
     drag(&mut harness, from, to, PointerButton::Primary, NONE);
-    assert_eq!(names(&harness), ["Sphere 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
     let after = center(harness.scene(), 0);
     assert!(
         (place(&harness, after) - to).length() < 25.0,
@@ -152,7 +145,7 @@ fn a_body_is_dragged_in_one_step_and_escape_takes_it_back() {
     drop_at(&mut harness, to, PointerButton::Primary, NONE);
     assert_eq!(harness.scene(), &Scene::demo());
     assert_eq!(harness.editor().undo_label(), None);
-    assert_eq!(names(&harness), ["Sphere 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
 
     drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
     let level = center(harness.scene(), 0);
@@ -243,7 +236,7 @@ fn the_menu_is_about_what_is_there_also_where_that_is_not_known_yet() {
     button(&mut harness, at, PointerButton::Secondary, true, NONE);
     button(&mut harness, at, PointerButton::Secondary, false, NONE);
     harness.wait_for("what is there", |harness| harness.sees("Duplicate"));
-    assert_eq!(names(&harness), ["Sphere 1"]);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
 }
 
 #[test]
@@ -308,7 +301,7 @@ fn several_are_moved_turned_copied_and_deleted_as_one() {
     let both = [one, other].map(|point| place(&harness, point));
     click(&mut harness, both[0], NONE);
     click(&mut harness, both[1], SHIFT);
-    assert_eq!(names(&harness), ["Sphere 1", "Sphere 2"]);
+    assert_eq!(harness.selected(), ["Sphere 1", "Sphere 2"]);
     drag(
         &mut harness,
         both[1],
@@ -327,10 +320,10 @@ fn several_are_moved_turned_copied_and_deleted_as_one() {
     assert_eq!(harness.editor().undo_label(), Some("Move 2 items"));
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene(), &Scene::demo());
-    assert_eq!(names(&harness), ["Sphere 1", "Sphere 2"]);
+    assert_eq!(harness.selected(), ["Sphere 1", "Sphere 2"]);
 
     harness.press(CTRL, Key::D);
-    assert_eq!(names(&harness), ["Sphere 3", "Sphere 4"]);
+    assert_eq!(harness.selected(), ["Sphere 3", "Sphere 4"]);
     harness.press(NONE, Key::Delete);
     assert_eq!(harness.scene(), &Scene::demo());
     assert_eq!(*harness.editor().selection(), Selection::Camera);
@@ -344,7 +337,7 @@ fn a_frame_selects_what_is_seen_in_it() {
     let view = harness.view();
     let (from, to) = (view.min + vec2(4.0, 4.0), view.max - vec2(4.0, 4.0));
     drag(&mut harness, from, to, PointerButton::Primary, SHIFT);
-    let found = names(&harness);
+    let found = harness.selected();
     assert!(
         found.contains(&"Sphere 1") && found.contains(&"Light 1"),
         "{found:?}"
@@ -472,14 +465,14 @@ fn text_is_pasted_and_what_is_none_is_refused() {
     let text = r#"Object(name: "New", color_pack: "plane", shape: Sphere(center: (120, 90, -80), radius: 9))"#;
     harness.window.event(Event::Paste(text.to_owned()));
     harness.settle();
-    assert_eq!(names(&harness), ["New"]);
+    assert_eq!(harness.selected(), ["New"]);
     assert_eq!(radius(harness.scene(), 9), 9.0);
     // With a word about it before it, and a mesh that is not there.
     let text = r#"// mine
 Object(name: "Gone", color_pack: "plane", shape: Mesh(file: "gone.ply"))"#;
     harness.window.event(Event::Paste(text.to_owned()));
     harness.settle();
-    assert_eq!(names(&harness), ["Gone"]);
+    assert_eq!(harness.selected(), ["Gone"]);
     harness
         .window
         .get_by_label_contains("\"Gone\" is not in the picture");
@@ -537,7 +530,7 @@ fn everything_is_found_by_its_name() {
     harness.window.event(Event::Text("here 2".to_owned()));
     harness.settle();
     harness.press(NONE, Key::Enter);
-    assert_eq!(names(&harness), ["Sphere 2"]);
+    assert_eq!(harness.selected(), ["Sphere 2"]);
     harness.press(CTRL, Key::K);
     harness.window.event(Event::Text("ortho".to_owned()));
     harness.settle();
@@ -573,14 +566,14 @@ fn everything_is_found_by_its_name() {
     harness.window.event(Event::Text("group 1".to_owned()));
     harness.settle();
     harness.press(NONE, Key::Enter);
-    assert_eq!(names(&harness), ["Triangle 2", "Triangle 4"]);
+    assert_eq!(harness.selected(), ["Triangle 2", "Triangle 4"]);
     // Also what people call it.
     for (word, name) in [("add ball", "Sphere 3"), ("cube", "Box 1")] {
         harness.press(CTRL, Key::K);
         harness.window.event(Event::Text(word.to_owned()));
         harness.settle();
         harness.press(NONE, Key::Enter);
-        assert_eq!(names(&harness), [name]);
+        assert_eq!(harness.selected(), [name]);
     }
     harness.press(CTRL, Key::K);
     harness.window.event(Event::Text("show clay".to_owned()));

@@ -1,0 +1,26 @@
+//! What the system tells of the machine, and of this program on it.
+
+use std::path::Path;
+
+use crate::files::read_file;
+
+/// The processor's name, where the system tells it.
+pub fn processor() -> String {
+    let told = told_in("/proc/cpuinfo").unwrap_or_default();
+    let line = told.lines().find(|line| line.starts_with("model name"));
+    let name = line.and_then(|line| line.split_once(':'));
+    let name = name.map_or("unknown processor", |(_, name)| name.trim());
+    name.replace("(R)", "").replace("(TM)", "")
+}
+
+/// How much memory this program has in use, where the system tells.
+pub fn resident_bytes() -> Option<u64> {
+    let told = told_in("/proc/self/status")?;
+    let line = told.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}
+
+fn told_in(path: &str) -> Option<String> {
+    String::from_utf8(read_file(Path::new(path)).ok()?).ok()
+}
