@@ -16,10 +16,10 @@ pub const MAX_TIMES: u32 = 1_000_000;
 #[derive(Clone, Copy, Debug, Args)]
 pub struct SizeArgs {
     /// Width in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = whole::<1, MAX_SIDE>)]
+    #[arg(long, value_parser = whole::<1, MAX_SIDE>, allow_negative_numbers = true)]
     width: Option<u32>,
     /// Height in pixels; alone, it keeps the scene's aspect
-    #[arg(long, value_parser = whole::<1, MAX_SIDE>)]
+    #[arg(long, value_parser = whole::<1, MAX_SIDE>, allow_negative_numbers = true)]
     height: Option<u32>,
 }
 
@@ -27,7 +27,7 @@ pub struct SizeArgs {
 #[derive(Clone, Copy, Debug, Args)]
 pub struct ThreadsArgs {
     /// Tracing threads [default: one per core]
-    #[arg(long, value_parser = whole::<1, MAX_THREADS>)]
+    #[arg(long, value_parser = whole::<1, MAX_THREADS>, allow_negative_numbers = true)]
     threads: Option<u32>,
 }
 

@@ -46,7 +46,7 @@ pub struct ChartArgs {
     #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray", "threads"])]
     cores: bool,
     /// Longer side of the pictures that are compared, in pixels
-    #[arg(long, default_value = "256", value_parser = whole::<8, 2048>)]
+    #[arg(long, default_value = "256", value_parser = whole::<8, 2048>, allow_negative_numbers = true)]
     side: u32,
     /// Write all figures to this file
     #[arg(long, value_name = "FILE")]

@@ -144,8 +144,8 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         made.map_err(CliError::failed)?;
     }
     reporter.end();
-    if let Some((path, _)) = video {
-        let frames = counted(sequence.frames.count(), "frame");
+    if let Some((path, video)) = video {
+        let frames = counted(video.frames_of(&sequence), "frame");
         say(&format!("{}: a video of {frames}", path.display()));
     }
     say(&format!(

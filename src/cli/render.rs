@@ -49,14 +49,14 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LEVEL", value_parser = lanes, value_hint = ValueHint::Other)]
     lanes: Option<Level>,
     /// Frame of the animation, from 1 [default: the scene's own camera and values]
-    #[arg(long, value_name = "N", value_parser = frame)]
+    #[arg(long, value_name = "N", value_parser = frame, allow_negative_numbers = true)]
     frame: Option<u64>,
     #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help(), value_hint = ValueHint::Other)]
     show: Option<Aspect>,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Trace so many times; the statistics take the median of all runs but the first, which makes meshes ready for them
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>)]
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>, allow_negative_numbers = true)]
     repeat: u32,
     /// Print one JSON object about the trace on stdout
     #[arg(long)]

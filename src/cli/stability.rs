@@ -22,7 +22,7 @@ pub struct StabilityArgs {
     png: Option<PathBuf>,
     /// Try so many times more rays than for a first look, in the maps of single rays; those of pictures take the square
     /// root of that, or stay as they are
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>)]
+    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>, allow_negative_numbers = true)]
     effort: u32,
 }
 

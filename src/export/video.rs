@@ -167,6 +167,17 @@ impl Video {
     }
 }
 
+impl Video {
+    /// How many of the frames of a sequence it shows.
+    pub fn frames_of(self, sequence: &Sequence) -> usize {
+        let count = sequence.frames.count();
+        match self {
+            Self::Gif => count - left_out(sequence.frames_per_second(), count),
+            _ => count,
+        }
+    }
+}
+
 /// What is noted about the frames of a sequence.
 fn notes(sequence: &Sequence) -> Result<Manifest, VideoError> {
     let path = sequence.folder.join(MANIFEST);

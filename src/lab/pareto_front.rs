@@ -29,7 +29,10 @@ pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
 pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
     let fits = |&index: &usize| measurements[index].1 <= error && measurements[index].0 <= cost;
     let fitting = (0..measurements.len()).filter(fits);
-    fitting.min_by(|&a, &b| measurements[a].0.total_cmp(&measurements[b].0))
+    fitting.min_by(|&a, &b| {
+        let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
+        by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
+    })
 }
 
 /// The closest dot (cost, error) of at most this cost, if there is one: the cheapest within an error on the chart
@@ -58,6 +61,11 @@ mod tests {
         assert_eq!(front(&[(1.0, 5.0), (2.0, 4.99)]), [0], "not worth it");
         assert_eq!(cheapest_within(&measurements, 4.0, 10.0), Some(3));
         assert_eq!(cheapest_within(&measurements, 4.0, 1.5), None);
+        assert_eq!(
+            closest_within(&[(2.0, 1.0), (1.0, 1.0)], 9.0),
+            Some(1),
+            "as close, and cheaper"
+        );
         assert_eq!(cheapest_within(&measurements, 0.5, 10.0), None);
         assert_eq!(closest_within(&measurements, 2.5), Some(3));
         assert_eq!(closest_within(&measurements, 0.9), None);

@@ -190,10 +190,11 @@ impl Document {
             }
             // The parser stops within a comment that ends the file.
             let is_bare = text[header(text).len()..].trim().is_empty();
-            let at = if is_bare {
-                text.trim_end().len()
-            } else {
-                found
+            let at = match &error.code {
+                _ if is_bare => text.trim_end().len(),
+                // It has read the sign of what must not have one.
+                ron::Error::IntegerOutOfBounds if text[..found].ends_with('-') => found - 1,
+                _ => found,
             };
             let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
             let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;

@@ -110,10 +110,18 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         Error::IntegerOutOfBounds => {
             "the number is out of range: it is too large, or less than 0".to_owned()
         }
+        Error::InvalidValueForType { expected, found } => invalid_value(expected, found),
         Error::UnclosedBlockComment => "the comment has no closing */".to_owned(),
         Error::TrailingCharacters => "there is more text behind the end of the scene".to_owned(),
         other => other.to_string(),
     }
+}
+
+/// Something of another type, as the parser has read it.
+fn invalid_value(expected: &str, found: &str) -> String {
+    let is_number = expected.contains("floating point");
+    let expected = if is_number { "a number" } else { expected };
+    format!("expected {expected}, found {found}")
 }
 
 /// Whether a number may begin with it.

@@ -144,7 +144,7 @@ impl Render {
     }
 
     /// Width over height of the picture.
-    pub fn aspect(&self) -> f64 {
+    pub fn aspect_ratio(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)
     }
 

@@ -121,7 +121,7 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The means of `side × side` samples in each pixel, each in the middle of its part.
+    /// The means of `side × side` samples in each pixel, each in the middle of its part, see [`whole_steps`].
     #[inline(always)]
     pub fn grid<const TREE: bool>(
         &mut self,

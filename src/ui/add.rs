@@ -128,7 +128,7 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
         return (camera.position, SMALLEST);
     };
     let usual = usual_distance(scene);
-    let half = scene.render.aspect() / 2.0;
+    let half = scene.render.aspect_ratio() / 2.0;
     let is_inside = |place: f64, half: f64| place.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0);
     // Nothing hangs in the air over a floor.
     let has_floor = planes(scene).next().is_some();

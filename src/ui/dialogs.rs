@@ -61,6 +61,12 @@ impl Ask {
             return path;
         }
         let own = self.endings()[0];
+        let doubled = format!(".{own}.{own}");
+        let name = path.to_string_lossy();
+        if name.ends_with(&doubled) && !path.exists() {
+            // Typed in front of an ending that was there already.
+            return path.with_extension("");
+        }
         match path.extension() {
             Some(ending) if ending.is_empty() => path.with_extension(own),
             Some(ending) if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own) => {

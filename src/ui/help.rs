@@ -31,6 +31,8 @@ pub fn show(ctx: &Context, open: &mut bool) {
             ScrollArea::both()
                 .max_width(room.x)
                 .max_height(room.y)
+                // The bar is at the edge of the window.
+                .auto_shrink([false, true])
                 .show(ui, |ui| {
                     lists(ui, room.x);
                 });

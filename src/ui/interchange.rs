@@ -156,7 +156,7 @@ fn is_table(path: &Path) -> bool {
 
 /// The camera that sees all of a box; `None` if it would be too far away.
 fn camera_around(scene: &Scene, bounds: (DVec3, DVec3)) -> Option<Camera> {
-    let camera = scene.camera.around(scene.render.aspect(), bounds);
+    let camera = scene.camera.around(scene.render.aspect_ratio(), bounds);
     let alone = Scene {
         camera: camera.clone(),
         ..Scene::empty()

@@ -184,7 +184,7 @@ fn paint(painter: &Painter, shown: &Shown, rect: Rect) {
 
 /// The largest place of the picture's aspect in `area`, on whole screen pixels.
 pub fn fit(area: Rect, scene: &Scene, pixels_per_point: f32) -> Place {
-    let aspect = scene.render.aspect() as f32;
+    let aspect = scene.render.aspect_ratio() as f32;
     let space = area.size() * pixels_per_point;
     let width = space.x.min(space.y * aspect).floor().max(1.0);
     let height = (width / aspect)

@@ -21,6 +21,10 @@ const MOST_FACES: usize = 500_000;
 /// What a picture of 8 bits may be off by.
 const SEEN: f64 = 1.01 / 255.0;
 
+/// Width of the window, and how far it is from the place that it explains, in points.
+const WIDTH: f32 = 480.0;
+const AWAY: f32 = 60.0;
+
 /// What is asked, and the answer.
 #[derive(Default)]
 pub struct Why {
@@ -32,6 +36,8 @@ pub struct Why {
     drawn: Option<DVec3>,
     /// Who finds that out, which takes longer.
     drawing: Background<Option<DVec3>>,
+    /// Whether its window has a place.
+    is_placed: bool,
 }
 
 impl Why {
@@ -101,26 +107,37 @@ impl Why {
         }
         let Some(answer) = &self.answer else { return };
         let mut is_open = true;
-        Window::new("Why this colour")
-            .open(&mut is_open)
+        let mut window = Window::new("Why this colour")
             .collapsible(false)
-            .default_width(480.0)
-            .default_pos([300.0, 60.0])
-            .show(ctx, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| {
-                    if aspect != Aspect::default() {
-                        ui.weak(
-                            "Of the picture with everything, whatever the view shows of it now.",
-                        );
-                    }
-                    show(ui, answer, 0);
-                    show_drawn(ui, answer, self.drawn);
-                });
+            .default_width(WIDTH);
+        if !std::mem::replace(&mut self.is_placed, true) {
+            window = window.current_pos(beside_pointer(ctx));
+        }
+        window.open(&mut is_open).show(ctx, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                if aspect != Aspect::default() {
+                    ui.weak("Of the picture with everything, whatever the view shows of it now.");
+                }
+                show(ui, answer, 0);
+                show_drawn(ui, answer, self.drawn);
             });
+        });
         if !is_open {
             self.close();
         }
     }
+}
+
+/// Where the window hides nothing of what was asked about.
+fn beside_pointer(ctx: &Context) -> Pos2 {
+    let (room, at) = (
+        ctx.content_rect(),
+        ctx.input(|input| input.pointer.latest_pos()),
+    );
+    let at = at.unwrap_or(room.center());
+    let (left, right) = (at.x - WIDTH - AWAY, at.x + AWAY);
+    let x = if left > room.left() { left } else { right };
+    Pos2::new(x, room.top() + AWAY)
 }
 
 /// Says so where the picture has something else there.
@@ -156,7 +173,7 @@ fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
         swatch(ui, color);
         ui.label(RichText::new(channels(color)).monospace());
         ui.label(RichText::new(&lit.object).strong());
-        ui.weak(format!("in {}, {} away", lit.pack, number(lit.distance)));
+        ui.weak(format!("wears {}, {} away", lit.pack, number(lit.distance)));
     });
     let place = |vector: DVec3| vector.to_array().map(number).join(", ");
     ui.weak(format!(

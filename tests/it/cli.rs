@@ -166,7 +166,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 19] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -174,6 +174,10 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["render", DEMO, "-o", "a.png", "--width", "0"],
+            "expected a whole number from 1 to 16384",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--width", "-1"],
             "expected a whole number from 1 to 16384",
         ),
         (

@@ -341,7 +341,7 @@ pub fn survey_flight(editor: &mut Editor) {
     while let Some(take) = editor.wanted_survey().cloned() {
         let mut seen = Vec::new();
         let scene = editor.scene();
-        let looked = (&SceneQuery::new(scene), scene.render.aspect());
+        let looked = (&SceneQuery::new(scene), scene.render.aspect_ratio());
         assert!(survey(&take, looked, &mut seen, &RenderControl::default()));
         editor.apply(Action::Time(Time::Surveyed(take, seen)));
     }

@@ -44,6 +44,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::csv_of;
+use crate::scene::format_number;
 
 /// All maps in single precision, `effort` times as many tries as for a first look.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -63,6 +64,15 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps
 }
 
+/// A mark of an axis, as powers of ten only where it is far from 1.
+fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        format_number(value)
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// One line for each method: how often it fails, and where most.
 pub fn summary(maps: &[Map]) -> String {
     let mut text = format!(
@@ -74,12 +84,11 @@ pub fn summary(maps: &[Map]) -> String {
         let mark = if map.is_default { '*' } else { ' ' };
         let worst = map.worst().filter(|worst| worst.2.failures > 0);
         let worst = worst.map_or("nowhere".to_owned(), |(x, y, cell)| {
-            format!(
-                "{:.3} % at {} {x:e}, {} {y:e}",
-                cell.rate() * 100.0,
-                map.across.name,
-                map.up.name
-            )
+            let places = [(&map.across, x), (&map.up, y)].into_iter();
+            let places = places.filter(|(axis, _)| axis.values.len() > 1);
+            let places = places.map(|(axis, value)| format!("{} {}", axis.name, short(value)));
+            let places = places.collect::<Vec<_>>().join(", ");
+            format!("{:.3} % at {places}", cell.rate() * 100.0)
         });
         let _ = writeln!(
             text,

@@ -121,30 +121,27 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
             small.clone(),
             colors.text,
         );
-        let words = pos2(left, top + LINE);
         let color = if has_failures(map) {
             colors.text
         } else {
             colors.muted
         };
-        if is_flat(map) || !has_failures(map) {
-            let after = pos2(left, method.bottom() + 1.0);
-            painter.text(
-                after,
-                Align2::LEFT_TOP,
-                map.sentence(),
-                small.clone(),
-                color,
-            );
-            continue;
-        }
+        let has_squares = has_failures(map) && !is_flat(map);
+        let below = if has_squares {
+            top + LINE
+        } else {
+            method.bottom() + 1.0
+        };
         painter.text(
-            words,
+            pos2(left, below),
             Align2::LEFT_TOP,
             map.sentence(),
             small.clone(),
             color,
         );
+        if !has_squares {
+            continue;
+        }
         let corner = pos2(left + beside, top + 3.0 * LINE);
         let squares = Rect::from_min_size(corner, vec2(width - beside - 2.0 * GRID, MAP));
         heat::paint_squares(ui, map, squares);

@@ -13,6 +13,11 @@ use super::labels::{along, place};
 use super::marks;
 use crate::lab::{Family, front};
 
+/// Room that labels of small charts beside each other have, in points, from which on they are seen.
+const CLOSE_LABELS: Rangef = Rangef {
+    min: 12.0,
+    max: 18.0,
+};
 /// How near to a dot the pointer must be, in points.
 const REACH: f32 = 14.0;
 /// A name farther away than this from its dot is tied to it by a line, in points.
@@ -165,7 +170,11 @@ impl Chart {
         } else {
             whole
         };
-        let mut up = vec![AxisHints::new_y().label(error).formatter(power_of_ten)];
+        let mut upwards = AxisHints::new_y().label(error).formatter(power_of_ten);
+        if self.is_one_of_several {
+            upwards = upwards.label_spacing(CLOSE_LABELS);
+        }
+        let mut up = vec![upwards];
         if self.has_decibels && !self.is_one_of_several {
             let decibels = AxisHints::new_y().label("dB").formatter(decibels);
             up.push(decibels.placement(HPlacement::Right));
@@ -173,7 +182,7 @@ impl Chart {
         let mut across = AxisHints::new_x().label(&self.cost).formatter(plain);
         if self.is_one_of_several {
             let unit = self.cost.split(' ').next().unwrap_or(&self.cost);
-            across = across.label(unit).label_spacing(Rangef::new(12.0, 18.0));
+            across = across.label(unit).label_spacing(CLOSE_LABELS);
         }
         Plot::new("lab chart")
             .custom_x_axes(vec![across])

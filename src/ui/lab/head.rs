@@ -133,17 +133,25 @@ impl Lab {
             button.hint(hint).clicked()
         };
         let hint = "Choose the fastest dot that is no farther off than this";
-        let by_error = button(ui, "Cheapest way below", hint);
         let rmse = DragValue::new(&mut self.bounds.0)
             .speed(1e-5)
             .range(1e-6..=1.0);
-        ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
+        // Each with its bound, also where lines are short.
+        let by_error = ui.horizontal(|ui| {
+            let is_clicked = button(ui, "Cheapest way below", hint);
+            ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
+            is_clicked
+        });
         let hint = "Choose the closest dot that takes no longer than this";
-        let by_time = button(ui, "Best way within", hint);
         let time = DragValue::new(&mut self.bounds.1)
             .speed(0.1)
             .range(0.01..=1e5);
-        ui.add(time.suffix(" ms")).accessible_name("time at most");
+        let by_time = ui.horizontal(|ui| {
+            let is_clicked = button(ui, "Best way within", hint);
+            ui.add(time.suffix(" ms")).accessible_name("time at most");
+            is_clicked
+        });
+        let (by_error, by_time) = (by_error.inner, by_time.inner);
         let Some(costs) = costs else { return };
         let found = if by_error {
             cheapest_within(&costs, self.bounds.0, f64::INFINITY)

@@ -243,7 +243,10 @@ impl Lab {
             });
             // The panel stays as high as it is, whatever there is to say.
             let details = ScrollArea::vertical().id_salt("details").auto_shrink(false);
-            details.show(ui, |ui| self.show_details(ui, editor, &members, out));
+            details.show(ui, |ui| {
+                // In it, one thing would stand beside the other, as it and the chart do.
+                ui.vertical(|ui| self.show_details(ui, editor, &members, out));
+            });
         });
         wish
     }

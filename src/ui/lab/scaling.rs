@@ -1,7 +1,7 @@
 //! The picture of how a picture would be shared between more and more cores.
 
 use egui::Ui;
-use egui_plot::{Corner, GridMark, Legend, Line, Plot, PlotPoints, Points};
+use egui_plot::{Corner, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
 use super::axes::plain;
@@ -56,13 +56,23 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
         .include_y(105.0)
         .set_margin_fraction(egui::vec2(0.06, 0.0))
         .show(ui, |plot| {
-            let scenes = pictures.chunk_by(|one, next| one.scene == next.scene);
-            for (scene, color) in scenes.zip(colors.into_iter().cycle()) {
+            let is_same = |one: &SharedPicture, next: &SharedPicture| {
+                one.scene == next.scene && one.workers < next.workers
+            };
+            let scenes = pictures.chunk_by(is_same).enumerate();
+            for ((number, scene), color) in scenes.zip(colors.into_iter().cycle()) {
+                // Where colours come again, lines are dashed.
+                let style = match number / colors.len() {
+                    0 => LineStyle::Solid,
+                    again => LineStyle::Dashed {
+                        length: 6.0 * again as f32,
+                    },
+                };
                 let name = scene[0].scene.clone();
                 let points: Vec<[f64; 2]> = scene.iter().map(at).collect();
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));
-                plot.line(Line::new(name, points).color(color).width(1.5));
+                plot.line(Line::new(name, points).color(color).width(1.5).style(style));
             }
         });
 }

@@ -29,6 +29,9 @@ use super::theme::{GRID, ROW, palette};
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
 use crate::scene::Scene;
 
+/// How far members of a group are to the right of what is in none: behind its name, which is behind an arrow.
+const MEMBER: f32 = ROW + 2.0 * GRID;
+
 /// What the panel remembers between frames.
 #[derive(Debug, Default)]
 pub struct Outliner {
@@ -324,7 +327,7 @@ impl Outliner {
         let is_selected = listed.is_marked(editor, item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if is_in_group {
-            rect.min.x += ROW;
+            rect.min.x += MEMBER;
         }
         if visible.is_some() {
             (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
@@ -379,7 +382,7 @@ impl Outliner {
     ) {
         let mut rect = row(ui);
         if is_in_group {
-            rect.min.x += ROW;
+            rect.min.x += MEMBER;
         }
         let name = item.name(scene).unwrap_or_default();
         ui.scope_builder(

@@ -69,7 +69,7 @@ impl Thumbs {
             return None;
         }
         let scale = ctx.pixels_per_point();
-        let aspect = scene.render.aspect() as f32;
+        let aspect = scene.render.aspect_ratio() as f32;
         let pixels = |height: f32| {
             let height = (height * scale).round().clamp(1.0, 512.0);
             (

@@ -153,8 +153,9 @@ impl Tools {
                 self.drag = None;
             }
         } else {
-            self.hover(ui, &view, hovered, meant);
+            // Below the name that is written beside the pointer.
             show_gizmo(meant);
+            self.hover(ui, &view, hovered, meant);
         }
         if self.drag.is_none() {
             self.turn_wheel(&view, response, wheel, out);
@@ -387,7 +388,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let least = DVec3::splat(least);
     let middle = low * 0.5 + high * 0.5;
     let bounds = (low.min(middle - least), high.max(middle + least));
-    Some(scene.camera.around(scene.render.aspect(), bounds))
+    Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
 }
 
 /// Whether nothing of what is selected can be in the picture: the ball around each thing is beside it, or behind the
@@ -398,7 +399,7 @@ pub fn is_selected_unseen(editor: &Editor) -> bool {
     let Some(framing) = scene.camera.framing() else {
         return false;
     };
-    let sides = sides(&framing, scene.render.aspect());
+    let sides = sides(&framing, scene.render.aspect_ratio());
     let is_out = |(low, high): (DVec3, DVec3)| {
         let (middle, radius) = (low.midpoint(high), (high - low).length() / 2.0);
         let mut sides = sides.iter();

@@ -377,7 +377,7 @@ fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imp
         harness.drop_file(path);
     }
     let framing = harness.scene().camera.framing().expect("a camera");
-    let aspect = harness.scene().render.aspect();
+    let aspect = harness.scene().render.aspect_ratio();
     for corner in [
         [3000.0, 0.0, 0.0],
         [3000.0, 900.0, 0.0],

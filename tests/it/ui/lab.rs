@@ -29,6 +29,13 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
             .query_by_label("stale: measure again")
             .is_none()
     );
+    // What is told of the dot stands in a column, and is in the window.
+    let (button, faces) = ("Use this", "×64");
+    let [button, faces] = [button, faces].map(|name| harness.window.get_by_label(name).rect());
+    assert!(
+        faces.bottom() < button.top() && button.right() < 1280.0,
+        "{faces:?} {button:?}"
+    );
     harness.click("×64");
     let steps = harness.editor().undo_label().map(str::to_owned);
     harness.click("Use this");

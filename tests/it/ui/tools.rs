@@ -597,7 +597,7 @@ fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
     });
     // It is about the scene as it is.
     let told = |harness: &EditorHarness| {
-        let node = harness.window.get_by_label_contains("in sphere 1, ");
+        let node = harness.window.get_by_label_contains("wears sphere 1, ");
         node.accesskit_node().value()
     };
     let before = told(&harness);
