@@ -80,8 +80,9 @@ fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     costs
 }
 
-/// [`costs_of_dots`] of what can be taken for a scene: no other program, no smaller picture, and no way in which less is
-/// spared or other things are seen, which are there to be looked at.
+/// Milliseconds and RMSE of the first way of each dot that can be taken for a scene: of no other program, no smaller
+/// picture, and no way in which less is spared or other things are seen, which are there to be looked at. NaN for the
+/// others, and where they are doubtful.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
     let mut costs = costs_of_dots(study);
     for (cost, dot) in costs.iter_mut().zip(&study.measurements) {
