@@ -16,6 +16,16 @@ pub fn capitalised(word: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
+/// A number with a decimal, or with two digits where it is small.
+pub fn short_number(value: f64) -> String {
+    let digits = if value > 0.0 && value < 1.0 {
+        (1.0 - value.log10().floor()).clamp(1.0, 9.0) as usize
+    } else {
+        1
+    };
+    format!("{value:.digits$}")
+}
+
 /// Most values that a message names.
 const MOST_NAMES: usize = 3;
 
@@ -54,6 +64,19 @@ pub fn shortened(text: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn small_numbers_have_two_digits() {
+        for (value, words) in [
+            (12.34, "12.3"),
+            (1.0, "1.0"),
+            (0.0444, "0.044"),
+            (0.99, "0.99"),
+            (0.0, "0.0"),
+        ] {
+            assert_eq!(short_number(value), words);
+        }
+    }
 
     #[test]
     fn long_texts_are_quoted_by_their_beginning() {

@@ -104,9 +104,11 @@ impl Preset {
                     camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
                 });
                 // From above or below, the upper edge stays where it is.
-                for key in keys.iter_mut().filter(|_| heading.is_some()) {
-                    key.value.look_at = target - key.value.position;
-                    key.value.up = heading.unwrap_or(key.value.up);
+                if let Some(heading) = heading {
+                    for key in &mut keys {
+                        key.value.look_at = target - key.value.position;
+                        key.value.up = heading;
+                    }
                 }
                 keys
             }

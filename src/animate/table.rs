@@ -72,7 +72,7 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         .split_inclusive('\n')
         .take_while(|line| is_blank(line))
         .collect();
-    let text = &text[blank.concat().len()..];
+    let text = &text[blank.iter().map(|line| line.len()).sum()..];
     let fail = |line: usize, what: String| TableError {
         line: line + blank.len(),
         what,

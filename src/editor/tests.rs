@@ -24,45 +24,6 @@ fn steps(editor: &mut Editor) -> usize {
 }
 
 #[test]
-fn a_scene_that_plays_is_in_time_with_what_is_recorded() {
-    let mut editor = Editor::demo();
-    let value = |time: f64| Value::Number(time / 10.0);
-    let lit = [0.0, 4.0].iter().fold(Animation::default(), |lit, &time| {
-        lit.with_value(&Target::AmbientIntensity, time, value(time))
-    });
-    editor.apply(Action::Edit(Edit::animation(lit, "light")));
-    let time = |time| Action::Time(time);
-    editor.apply(time(Time::Speed(3.0)));
-    editor.apply(time(Time::Seek(1.0)));
-    editor.apply(time(Time::Record));
-    editor.apply(time(Time::Sample(10.0)));
-    editor.apply(time(Time::Sample(12.0)));
-    editor.apply(time(Time::Play(true)));
-    assert_eq!(editor.timeline().playhead, 2.0);
-    editor.apply(time(Time::Sample(15.0)));
-    editor.apply(time(Time::Tick(3.0)));
-    assert_eq!(editor.timeline().playhead, 5.0, "it does not begin again");
-}
-
-#[test]
-fn one_key_keeps_the_playhead_where_it_is() {
-    let mut editor = Editor::demo();
-    let still = Animation {
-        keys: vec![crate::scene::Key::new(0.0, editor.scene().camera.clone())],
-        ..Animation::default()
-    };
-    editor.apply(Action::Edit(Edit::animation(still, "key")));
-    editor.end_gesture();
-    let radius = radius_edit(&editor, 51.0);
-    editor.apply(radius);
-    editor.apply(Action::Time(Time::Seek(2.0)));
-    editor.apply(Action::Undo);
-    editor.apply(Action::Time(Time::Play(true)));
-    editor.apply(Action::Time(Time::Tick(0.1)));
-    assert_eq!(editor.timeline().playhead, 2.0);
-}
-
-#[test]
 fn a_drag_is_one_step_and_two_drags_are_two() {
     let mut editor = Editor::demo();
     for radius in [51.0, 52.0, 53.0] {

@@ -165,9 +165,7 @@ impl Video {
             _ => with(None),
         }
     }
-}
 
-impl Video {
     /// How many of the frames of a sequence it shows.
     pub fn frames_of(self, sequence: &Sequence) -> usize {
         let count = sequence.frames.count();

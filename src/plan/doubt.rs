@@ -14,10 +14,8 @@ impl<R: Real> Plan<R> {
     /// are rounded there as numbers of its size are.
     pub fn doubt(&mut self) {
         let meshes = self.geometry.iter().flat_map(|all| &all.meshes);
-        let farthest = |most: R, middle: R| most.max(middle);
-        self.farthest_middle = meshes
-            .map(|mesh| mesh.centre.max_abs())
-            .fold(R::ZERO, farthest);
+        let middles = meshes.map(|mesh| mesh.centre.max_abs());
+        self.farthest_middle = middles.fold(R::ZERO, R::max);
         self.blur = Blur::of_size(self.view.farthest_start() + self.farthest_middle);
     }
 }

@@ -93,8 +93,7 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
     }
 
     fn flat(&self) -> Option<(Vec3<R>, R)> {
-        let none = Vec3::new(R::ZERO, R::ZERO, R::ZERO);
-        Some((none, self.radius * R::from_f64(FLAT_PART)))
+        Some((Vec3::splat(R::ZERO), self.radius * R::from_f64(FLAT_PART)))
     }
 
     fn material(&self) -> u32 {

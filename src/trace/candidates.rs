@@ -72,18 +72,15 @@ impl Candidates {
     /// Everything that casts shadows from a light.
     pub fn all_casting<R: Real>(plan: &Plan<R>, light: &PointLight<R>) -> Self {
         // Each light has such a list in each thread: none has room for what is not in it.
-        let mut counts = plan.primitives.counts();
-        let first_ball = plan.markers as u32;
-        let balls = first_ball..counts[Kind::Sphere as usize] as u32;
-        counts[Kind::Sphere as usize] = 0;
+        let mut kinds = plan.primitives.counts().map(|count| 0..count as u32);
+        kinds[Kind::Sphere as usize].start = plan.markers as u32;
         if !plan.planes_cast {
-            counts[Kind::Plane as usize] = 0;
+            kinds[Kind::Plane as usize] = 0..0;
         }
         let mut all = Self {
-            lists: counts.map(|count| (0..count as u32).collect()),
+            lists: kinds.map(Iterator::collect),
             has_geometry: plan.geometry.is_some(),
         };
-        all.lists[Kind::Sphere as usize] = balls.collect();
         all.leave_out(plan, &light.holders);
         all
     }

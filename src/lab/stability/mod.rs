@@ -44,7 +44,6 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use super::table::csv_of;
-use crate::scene::format_number;
 
 /// All maps in single precision, `effort` times as many tries as for a first look.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -64,15 +63,6 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps
 }
 
-/// A mark of an axis, as powers of ten only where it is far from 1.
-fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
-        format_number(value)
-    } else {
-        format!("{value:e}")
-    }
-}
-
 /// One line for each method: how often it fails, and where most.
 pub fn summary(maps: &[Map]) -> String {
     let mut text = format!(
@@ -86,7 +76,8 @@ pub fn summary(maps: &[Map]) -> String {
         let worst = worst.map_or("nowhere".to_owned(), |(x, y, cell)| {
             let places = [(&map.across, x), (&map.up, y)].into_iter();
             let places = places.filter(|(axis, _)| axis.values.len() > 1);
-            let places = places.map(|(axis, value)| format!("{} {}", axis.name, short(value)));
+            let places =
+                places.map(|(axis, value)| format!("{} {}", axis.name, words::number(value)));
             let places = places.collect::<Vec<_>>().join(", ");
             format!("{:.3} % at {places}", cell.rate() * 100.0)
         });

@@ -1,6 +1,7 @@
 //! What a map says, in a sentence.
 
 use super::map::{Axis, Map, Tries};
+use crate::words::short_number;
 
 /// Axes that are named before their numbers.
 const NAMES: [&str; 3] = ["scale", "exponent", "longest to shortest segment"];
@@ -73,11 +74,7 @@ fn percent(rate: f64) -> String {
     match percent {
         _ if percent >= 99.95 => "100 %".to_owned(),
         _ if percent >= 10.0 => format!("{percent:.0} %"),
-        _ if percent >= 1.0 => format!("{percent:.1} %"),
-        _ => {
-            let digits = (1.0 - percent.log10().floor()).clamp(1.0, 9.0) as usize;
-            format!("{percent:.digits$} %")
-        }
+        _ => format!("{} %", short_number(percent)),
     }
 }
 
