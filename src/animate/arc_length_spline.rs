@@ -70,7 +70,7 @@ impl ArcLengthSpline {
             .iter()
             .map(|segment| segment.start + segment.length());
         let stops: Vec<f64> = std::iter::once(0.0).chain(ends).collect();
-        let reached = places.into_iter().map(|place| stops[place]).collect();
+        let reached = places.into_iter().map(|index| stops[index]).collect();
         Self { segments, reached }
     }
 

@@ -219,15 +219,15 @@ mod tests {
                 }
                 let time = keys[segment].time * 0.7 + keys[segment + 1].time * 0.3;
                 let along = (time - keys[segment].time) / (keys[segment + 1].time - keys[segment].time);
-                let (whole, place) = run(&keys, segment);
+                let (whole, index) = run(&keys, segment);
                 let times: Vec<f64> = whole.iter().map(|key| key.time).collect();
                 let values = whole.iter().map(|key| number(key.value)).collect();
-                let expected = Curve::new(times.clone(), values, Closing::Open).at(place, along);
+                let expected = Curve::new(times.clone(), values, Closing::Open).at(index, along);
                 prop_assert_eq!(value_at(&numbers, time), Some(Value::Number(expected)));
                 let points: Vec<DVec3> = whole.iter().map(|key| point(key.value)).collect();
                 let route = ArcLengthSpline::new(&points, Closing::Open);
                 let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
-                let expected = route.at(pace.at(place, along)).unwrap_or(points[place]);
+                let expected = route.at(pace.at(index, along)).unwrap_or(points[index]);
                 let Some(Value::Point(found)) = value_at(&keys, time) else {
                     return Err(TestCaseError::fail("no point"));
                 };

@@ -24,7 +24,7 @@ const SMOOTHING: [f64; 6] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04];
 /// A place in a picture and what is seen there: by how much it moves tells how far off another
 /// camera is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct Landmark {
     /// In the picture, in image heights from its middle, y up.
     pub at: [f64; 2],
     /// The point of the scene, in world units; for the sky, the direction.
@@ -55,7 +55,7 @@ pub struct Worst {
 
 /// How far, in image heights, what was seen at known places is off through another camera.
 /// Infinite where it is behind that.
-pub fn deviation(camera: &Camera, seen: &[Seen]) -> f64 {
+pub fn deviation(camera: &Camera, seen: &[Landmark]) -> f64 {
     let Some(framing) = camera.framing() else {
         return f64::INFINITY;
     };
@@ -76,7 +76,7 @@ pub fn deviation(camera: &Camera, seen: &[Seen]) -> f64 {
 ///
 /// A hand trembles: where the tolerance allows it, the keys are taken from a smoother flight that is
 /// itself off by no more than half of it.
-pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
+pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplified {
     let (cuts, jumps) = (cuts(take), jumps(take, seen));
     let edges: BTreeSet<usize> = cuts.union(&jumps).copied().collect();
     let search = Search {
@@ -102,7 +102,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Seen>], tolerance: f64) -> Simplified {
 fn smoothed_cameras(
     take: &Take,
     cuts: &BTreeSet<usize>,
-    seen: &[Vec<Seen>],
+    seen: &[Vec<Landmark>],
     tolerance: f64,
 ) -> Vec<Camera> {
     let is_near = |cameras: &Vec<Camera>| {
@@ -131,7 +131,7 @@ pub fn ends_of(keys: &[Key<Camera>]) -> Option<(f64, f64)> {
 pub fn worst_off(
     path: &CameraPath,
     take: &Take,
-    seen: &[Vec<Seen>],
+    seen: &[Vec<Landmark>],
     flown: Option<(f64, f64)>,
 ) -> Worst {
     let (Some((start, end)), Some(ends), [first, .., last]) =
@@ -160,7 +160,7 @@ struct Search<'t> {
     take: &'t Take,
     /// What the samples' keys are.
     cameras: Vec<Camera>,
-    seen: &'t [Vec<Seen>],
+    seen: &'t [Vec<Landmark>],
     tolerance: f64,
     /// Last samples before the projection changes.
     cuts: BTreeSet<usize>,
@@ -179,7 +179,7 @@ fn cuts(take: &Take) -> BTreeSet<usize> {
 
 /// The samples after which the picture moves much farther than it did around them: a script or a touchpad
 /// moved the mouse, or the machine was busy with something else.
-fn jumps(take: &Take, seen: &[Vec<Seen>]) -> BTreeSet<usize> {
+fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
     let cameras = (1..take.samples.len()).map(|n| take.camera(n));
     let steps: Vec<f64> = cameras
         .zip(seen)

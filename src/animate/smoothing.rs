@@ -54,8 +54,8 @@ fn mean(part: &[(f64, NumberRow)], n: usize, seconds: f64) -> NumberRow {
     let mut add = |apart: f64, stands_for: f64, numbers: &NumberRow, mirror: Option<&NumberRow>| {
         let weight = stands_for * (-0.5 * (apart / seconds).powi(2)).exp();
         weights += weight;
-        for (place, sum) in sum.iter_mut().enumerate() {
-            *sum += weight * mirror.map_or(numbers[place], |end| 2.0 * end[place] - numbers[place]);
+        for (index, sum) in sum.iter_mut().enumerate() {
+            *sum += weight * mirror.map_or(numbers[index], |end| 2.0 * end[index] - numbers[index]);
         }
     };
     let reach = 3.0 * seconds;

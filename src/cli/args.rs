@@ -24,7 +24,7 @@ pub struct SizeArgs {
 }
 
 /// How many threads trace.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub struct ThreadsArgs {
     /// Tracing threads [default: one per core]
     #[arg(long, value_parser = whole::<1, MAX_THREADS>, allow_negative_numbers = true)]

@@ -30,6 +30,8 @@ use crate::words::{capitalised, counted};
 const MOST_PRIMITIVES: u32 = 1_000_000;
 /// Sides of the picture, in pixels: room for the words, and less than what a screen is out of.
 const SIDES: RangeInclusive<u32> = 480..=8192;
+/// Size of the picture of few scenes, in pixels.
+const SIZE: (u32, u32) = (1600, 960);
 /// Steps of the progress bar.
 const BAR: u64 = 1000;
 
@@ -57,9 +59,9 @@ pub struct ChartArgs {
     /// Colours of the picture
     #[arg(long, value_name = "THEME", default_value = "dark")]
     theme: PictureTheme,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x960", value_parser = picture_size)]
-    size: (u32, u32),
+    /// Size of the picture in pixels [default: 1600x960, more for many scenes]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
+    size: Option<(u32, u32)>,
     /// Name the cheapest way whose error is at most this: 55dB, or an RMSE (linear, 0–1)
     #[arg(long, value_name = "ERROR", value_parser = error)]
     within: Option<f64>,
@@ -82,9 +84,35 @@ enum PictureTheme {
 
 impl ChartArgs {
     fn look(&self) -> PictureLook {
+        let least = self.least_size();
+        let usual = (SIZE.0.max(least.0), SIZE.1.max(least.1));
         PictureLook {
             is_light: self.theme == PictureTheme::Light,
-            size: self.size,
+            size: self.size.unwrap_or(usual),
+        }
+    }
+
+    /// The smallest size of the picture that shows all of it.
+    fn least_size(&self) -> (u32, u32) {
+        let is_one = self.scenes.len() < 2 || self.cores;
+        if is_one {
+            (*SIDES.start(), *SIDES.start())
+        } else {
+            PictureLook::least_size(self.scenes.len())
+        }
+    }
+
+    /// A size that is too small is known before the first ray.
+    fn check_size(&self) -> Result<(), CliError> {
+        let (width, height) = self.least_size();
+        match self.size {
+            Some(size) if size.0 < width || size.1 < height => {
+                let charts = self.scenes.len();
+                Err(CliError::usage(format!(
+                    "{charts} charts need a picture of {width}x{height} pixels or more"
+                )))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -102,6 +130,7 @@ impl ChartArgs {
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     // A name that cannot be written is known before the first ray.
     picture_format(args.png.as_deref())?;
+    args.check_size()?;
     check_table(args.csv.as_deref())?;
     if let Some(path) = &args.csv
         && args.scenes.iter().any(|scene| is_same_file(scene, path))
@@ -257,8 +286,8 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> Strin
     };
     best.map_or_else(
         || "nothing measured is within that".to_owned(),
-        |place| {
-            let candidate = &study.measurements[place].candidate;
+        |index| {
+            let candidate = &study.measurements[index].candidate;
             format!("take {}: {}", candidate.name, candidate.words())
         },
     )
@@ -273,5 +302,30 @@ mod tests {
         let scenes = ["a/x.ron", "b/X.ron", "b/y.ron"].map(PathBuf::from);
         let names = scenes.each_ref().map(|path| name_of(path, &scenes));
         assert_eq!(names, ["a/x.ron", "b/X.ron", "Y"]);
+    }
+
+    #[test]
+    fn a_picture_shows_all_of_its_charts() {
+        let args = |scenes: usize, size| ChartArgs {
+            scenes: vec![PathBuf::from("a.ron"); scenes],
+            growth: false,
+            cores: false,
+            side: 8,
+            csv: None,
+            png: None,
+            theme: PictureTheme::Dark,
+            size,
+            within: None,
+            budget: None,
+            povray: false,
+            threads: ThreadsArgs::default(),
+        };
+        assert_eq!(args(1, None).look().size, SIZE);
+        assert_eq!(args(9, None).look().size, SIZE);
+        assert_eq!(args(16, None).look().size, (1920, 1240));
+        assert!(args(1, Some((480, 480))).check_size().is_ok());
+        let problem = args(3, Some((480, 480))).check_size().expect_err("cut off");
+        let expected = "3 charts need a picture of 960x680 pixels or more";
+        assert_eq!(problem.to_string(), expected);
     }
 }

@@ -23,7 +23,7 @@ use crate::words::counted;
 
 /// What is exported, for a folder and for a job.
 #[derive(Debug, Args)]
-struct What {
+struct SequenceArgs {
     /// The scene file (RON)
     scene: PathBuf,
     /// Frames, counted from 1: 1-202, 1,4 or 1-10:3 [default: all]
@@ -49,7 +49,7 @@ fn antialias_help() -> String {
 #[derive(Debug, Args)]
 pub struct ExportArgs {
     #[command(flatten)]
-    what: What,
+    what: SequenceArgs,
     /// The folder that the frames go to
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -69,7 +69,7 @@ pub struct ExportArgs {
 #[derive(Debug, Args)]
 pub struct JobArgs {
     #[command(flatten)]
-    what: What,
+    what: SequenceArgs,
     /// The template to write (YAML); the scene is copied beside it if it is elsewhere, or has meshes that are files
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -79,7 +79,7 @@ fn format_of(word: &str) -> Result<Format, String> {
     Format::of_ending(word).ok_or_else(|| "expected ppm, png or exr".to_owned())
 }
 
-impl What {
+impl SequenceArgs {
     /// The frames of a scene.
     fn sequence(&self, mut scene: Scene, folder: PathBuf) -> Result<Sequence, CliError> {
         let render = &mut scene.render;

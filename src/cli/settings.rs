@@ -41,12 +41,12 @@ impl VisitSetting for Flags {
 }
 
 /// Reads the flags.
-struct Read<'a> {
+struct FlagReader<'a> {
     matches: &'a mut ArgMatches,
     asked: Vec<(&'static str, String)>,
 }
 
-impl VisitSetting for Read<'_> {
+impl VisitSetting for FlagReader<'_> {
     fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
         let asked = self.matches.remove_one(setting.name);
         self.asked.extend(asked.map(|id| (setting.name, id)));
@@ -59,7 +59,7 @@ impl FromArgMatches for SettingArgs {
     }
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, Error> {
-        let mut read = Read {
+        let mut read = FlagReader {
             matches,
             asked: Vec::new(),
         };

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::item::{Item, Kind};
 use super::names::{
-    Placed, copy_offset, free_light_name, free_object_name, free_pack_name, way_past,
+    Spot, copy_offset, free_light_name, free_object_name, free_pack_name, way_past,
 };
 use crate::scene::{
     ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
@@ -63,7 +63,7 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     };
     // Two in one place would look like one.
     let step = step_of_light(scene, &light);
-    light.position += way_past(scene, &[Placed::light(position)], (step, 0));
+    light.position += way_past(scene, &[Spot::light(position)], (step, 0));
     scene.lights.push(light);
     Item::light(scene.lights.len() - 1)
 }
@@ -110,7 +110,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
             let step = step_of_light(scene, &copy);
-            let by = way_past(scene, &[Placed::light(copy.position)], (step, 1));
+            let by = way_past(scene, &[Spot::light(copy.position)], (step, 1));
             copy.position += by;
             copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);
             scene.lights.insert(index + 1, copy);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::edit::Replaced;
-use super::timeline::{Look, MEASURED_AT, Timeline};
-use crate::animate::{CameraPath, Seen, Worst, ends_of, pose, shot, worst_off};
+use super::timeline::{MEASURED_AT, Timeline, ViewState};
+use crate::animate::{CameraPath, Landmark, Worst, ends_of, pose, shot, worst_off};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
 /// The finest tolerance of the slider, in pixels.
@@ -48,7 +48,7 @@ pub struct AnimationState {
     made_for: (f64, bool),
     pub revision: u64,
     /// What the samples of a take see: to find out takes rays, which are not traced here.
-    pub survey: Option<(Arc<Take>, Vec<Vec<Seen>>)>,
+    pub survey: Option<(Arc<Take>, Vec<Vec<Landmark>>)>,
     /// What is done with the survey once it is there.
     pub pending: Option<Pending>,
     /// Keys that were made of recordings, and how far they might be off, in pixels.
@@ -139,7 +139,7 @@ impl AnimationState {
     }
 
     /// What the samples of a take see, if that is known.
-    pub fn seen_by(&self, take: &Arc<Take>) -> Option<&[Vec<Seen>]> {
+    pub fn seen_by(&self, take: &Arc<Take>) -> Option<&[Vec<Landmark>]> {
         let (of, seen) = self.survey.as_ref()?;
         Arc::ptr_eq(of, take).then_some(seen.as_slice())
     }
@@ -162,7 +162,7 @@ impl AnimationState {
     }
 
     /// Looks at what was looked at before a step that is taken back, or done again, on the way to this scene.
-    pub fn look_again(&mut self, before: Look, there: &Scene) {
+    pub fn look_again(&mut self, before: ViewState, there: &Scene) {
         self.timeline.look_again(before, &self.scene, there);
     }
 
@@ -201,12 +201,12 @@ impl AnimationState {
     /// The scene with the objects in these places as they are on show.
     pub fn posed(&self, scene: &Scene, places: &[usize]) -> Scene {
         let mut posed = scene.clone();
-        for &place in places {
-            let shown = self.shown.objects.get(place);
-            let own = scene.objects.get(place);
+        for &index in places {
+            let shown = self.shown.objects.get(index);
+            let own = scene.objects.get(index);
             if let Some((shown, own)) = shown.zip(own)
                 && shown.shape != own.shape
-                && let Some(object) = posed.objects.get_mut(place)
+                && let Some(object) = posed.objects.get_mut(index)
             {
                 object.shape.clone_from(&shown.shape);
             }

@@ -45,7 +45,7 @@ impl Arrangement {
         if is_down {
             order.reverse();
         }
-        let from = order.iter().position(|place| all.contains(place))?;
+        let from = order.iter().position(|index| all.contains(index))?;
         let before = &order[..from];
         let next = *before.last()?;
         let of_next = &objects[next].group;
@@ -55,7 +55,7 @@ impl Arrangement {
         let is_past_group = own.is_empty() && !of_next.is_empty();
         let mut passed = before.iter().copied();
         let anchor = passed
-            .find(|&place| place == next || is_past_group && objects[place].group == *of_next)?;
+            .find(|&index| index == next || is_past_group && objects[index].group == *of_next)?;
         Some(Self {
             objects: moved.to_vec(),
             anchor,
@@ -110,7 +110,7 @@ fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
     let some: HashSet<usize> = some.iter().copied().collect();
     let places = order.iter().enumerate();
     let places = places.filter(|(_, before)| some.contains(before));
-    places.map(|(place, _)| place).collect()
+    places.map(|(index, _)| index).collect()
 }
 
 /// Puts objects elsewhere; returns where they are.
@@ -118,9 +118,9 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let moved: HashSet<usize> = arrangement.objects.into_iter().collect();
     let order = listed(&scene.objects);
     let (moved, mut order): (Vec<usize>, Vec<usize>) =
-        order.into_iter().partition(|place| moved.contains(place));
+        order.into_iter().partition(|index| moved.contains(index));
     let is_kept_so = order.is_sorted() && moved.is_sorted();
-    let anchor = order.iter().position(|place| *place == arrangement.anchor);
+    let anchor = order.iter().position(|index| *index == arrangement.anchor);
     let Some(anchor) = anchor else {
         return Vec::new();
     };
@@ -128,7 +128,7 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let places = at..at + moved.len();
     if is_kept_so {
         // The rest of the list is shared with the one before, also in the history.
-        let taken = moved.iter().rev().map(|place| scene.objects.remove(*place));
+        let taken = moved.iter().rev().map(|index| scene.objects.remove(*index));
         for object in taken.collect::<Vec<_>>() {
             scene.objects.insert(at, object);
         }
@@ -137,8 +137,8 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         reorder(scene, &order);
     }
     if let Some(group) = arrangement.group {
-        for place in places.clone() {
-            scene.objects[place].group.clone_from(&group);
+        for index in places.clone() {
+            scene.objects[index].group.clone_from(&group);
         }
     }
     places.map(Item::object).collect()
@@ -152,16 +152,16 @@ fn reorder(scene: &mut Scene, order: &[usize]) {
 /// The places of objects in the order in which they are shown.
 fn listed(objects: &List<Object>) -> Vec<usize> {
     let mut firsts: HashMap<&str, usize> = HashMap::new();
-    let keys = objects.iter().enumerate().map(|(place, object)| {
+    let keys = objects.iter().enumerate().map(|(index, object)| {
         let first = match object.group.as_str() {
-            "" => place,
-            group => *firsts.entry(group).or_insert(place),
+            "" => index,
+            group => *firsts.entry(group).or_insert(index),
         };
-        (first, place)
+        (first, index)
     });
     let mut keys: Vec<(usize, usize)> = keys.collect();
     keys.sort_unstable();
-    keys.into_iter().map(|(_, place)| place).collect()
+    keys.into_iter().map(|(_, index)| index).collect()
 }
 
 #[cfg(test)]
@@ -264,7 +264,7 @@ mod tests {
         let before = scene.objects.clone();
         let moved = arrange(&mut scene, after(&[7, 3], 40, None));
         assert_eq!(moved, [39, 40].map(Item::object));
-        let moved = [39, 40].map(|place| scene.objects[place].name.clone());
+        let moved = [39, 40].map(|index| scene.objects[index].name.clone());
         assert_eq!(moved, ["Ball 3", "Ball 7"]);
         let all = scene.objects.bytes_apart(&List::new());
         assert!(scene.objects.bytes_apart(&before) * 4 < all);

@@ -10,7 +10,7 @@ use indexmap::IndexMap;
 use super::adding::step_of_light;
 use super::arrange::{Arrangement, arrange};
 use super::item::{Item, Kind};
-use super::names::{Placed, step_aside, way_past};
+use super::names::{Spot, step_aside, way_past};
 use super::selection::Selection;
 use crate::scene::{
     ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
@@ -190,13 +190,13 @@ fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<
 fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<Arrangement> {
     let names = pasted.objects.iter().map(|object| &*object.name);
     let names: HashSet<&str> = names.collect();
-    let group = |place: usize| scene.objects[place].group.as_str();
+    let group = |index: usize| scene.objects[index].group.as_str();
     let own = group(new.clone().next()?);
     let last_in =
-        |name: &str| (0..new.start).rfind(|place| !name.is_empty() && group(*place) == name);
-    let original = (0..new.start).rfind(|place| names.contains(&*scene.objects[*place].name));
+        |name: &str| (0..new.start).rfind(|index| !name.is_empty() && group(*index) == name);
+    let original = (0..new.start).rfind(|index| names.contains(&*scene.objects[*index].name));
     let beside = original.or_else(|| last_in(own))?;
-    let is_of_group = new.clone().all(|place| group(place) == group(beside));
+    let is_of_group = new.clone().all(|index| group(index) == group(beside));
     let around = last_in(group(beside)).filter(|_| !is_of_group);
     Some(Arrangement {
         objects: new.collect(),
@@ -260,7 +260,7 @@ fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
         }
         (Some(first), None) => step_aside(scene, &first.shape),
     };
-    let new: Vec<Placed> = Placed::all_of(pasted).collect();
+    let new: Vec<Spot> = Spot::all_of(pasted).collect();
     way_past(scene, &new, (step, 0))
 }
 

@@ -7,7 +7,7 @@ use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
 use super::timeline::{MEASURED_AT, Recording, Time};
-use crate::animate::{Seen, Worst, resampled, simplify};
+use crate::animate::{Landmark, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
 use crate::words::counted;
 
@@ -139,7 +139,7 @@ impl Editor {
         }
     }
 
-    fn survey_arrived(&mut self, take: Arc<Take>, seen: Vec<Vec<Seen>>) {
+    fn survey_arrived(&mut self, take: Arc<Take>, seen: Vec<Vec<Landmark>>) {
         let state = &mut self.animation_state;
         let pending = state
             .pending

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::selection::Selection;
-use super::timeline::Look;
+use super::timeline::ViewState;
 use crate::scene::Scene;
 
 /// Steps that can be taken back; older ones are forgotten.
@@ -20,7 +20,7 @@ pub struct Snapshot {
     /// What was selected.
     pub selection: Selection,
     /// What was looked at.
-    pub look: Look,
+    pub look: ViewState,
 }
 
 /// A step that was done, or taken back.
@@ -169,7 +169,7 @@ mod tests {
         Snapshot {
             scene: Arc::new(scene.clone()),
             selection: Selection::default(),
-            look: Look::default(),
+            look: ViewState::default(),
         }
     }
 

@@ -68,8 +68,8 @@ impl Editor {
     /// The last error of an action, if nobody was told of it yet: nobody is, then.
     pub fn take_error(&mut self, about: &str) -> Option<String> {
         let is_it = |message: &Message| message.is_error && message.about == about;
-        let place = self.messages.iter().rposition(is_it)?;
-        Some(self.messages.remove(place).text)
+        let index = self.messages.iter().rposition(is_it)?;
+        Some(self.messages.remove(index).text)
     }
 
     /// Says which meshes could not be read.

@@ -40,20 +40,20 @@ pub fn free_bookmark_name(bookmarks: &[Bookmark], wanted: &str) -> String {
 
 /// From a shape to where its copy stands: two things in one place would shadow each other, as would two copies.
 pub fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
-    let new = [Placed::of(shape)];
+    let new = [Spot::of(shape)];
     way_past(scene, &new, (step_aside(scene, shape), 1))
 }
 
 /// Something where others of its kind would shadow it.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct Spot {
     /// The kind of a shape; lights have none.
     kind: Option<&'static str>,
     /// Where it is.
     pub place: DVec3,
 }
 
-impl Placed {
+impl Spot {
     /// Of a shape.
     pub fn of(shape: &Shape) -> Self {
         Self {
@@ -76,17 +76,17 @@ impl Placed {
 }
 
 /// Steps, at least so many, after which none of these is where something of its kind is in the scene.
-pub fn way_past(scene: &Scene, new: &[Placed], (step, least): (DVec3, u32)) -> DVec3 {
+pub fn way_past(scene: &Scene, new: &[Spot], (step, least): (DVec3, u32)) -> DVec3 {
     // Steps one after the other are rounded otherwise than all of them at once.
     let near = step.length() * 1e-6;
     let cell = |place: DVec3| {
         let cell = place / (near * 4.0).max(f64::MIN_POSITIVE);
         cell.floor().to_array().map(|part| part as i64)
     };
-    let there = Placed::all_of(scene).map(|Placed { kind, place }| (kind, cell(place)));
+    let there = Spot::all_of(scene).map(|Spot { kind, place }| (kind, cell(place)));
     let there: HashSet<(Option<&str>, [i64; 3])> = there.collect();
     let is_taken = |by: DVec3| {
-        new.iter().any(|Placed { kind, place }| {
+        new.iter().any(|Spot { kind, place }| {
             let wanted = *place + by;
             let ([x0, y0, z0], [x1, y1, z1]) = (cell(wanted - near), cell(wanted + near));
             // Two along each axis at most.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::animate::{Seen, Worst};
+use crate::animate::{Landmark, Worst};
 use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Scene, Take};
 
 /// The picture that a deviation is told for, in pixels.
@@ -46,7 +46,7 @@ pub enum Time {
     /// Make keys of what was recorded.
     Stop,
     /// What the samples of a take see, which was asked for, see `Editor::wanted_survey`.
-    Surveyed(Arc<Take>, Vec<Vec<Seen>>),
+    Surveyed(Arc<Take>, Vec<Vec<Landmark>>),
     /// Make keys of the take anew: off by so many pixels of a picture 1024 high at most.
     Simplify(f64),
 }
@@ -83,7 +83,7 @@ pub struct Timeline {
 
 /// What is looked at, and when.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Look {
+pub struct ViewState {
     wants_shot: bool,
     is_flown: bool,
     /// Seconds from the start.
@@ -124,8 +124,8 @@ impl Timeline {
         self.wants_shot && !animation.keys.is_empty()
     }
 
-    pub(super) fn look(&self) -> Look {
-        Look {
+    pub(super) fn look(&self) -> ViewState {
+        ViewState {
             wants_shot: self.wants_shot,
             is_flown: self.is_flown,
             playhead: self.playhead,
@@ -134,7 +134,7 @@ impl Timeline {
 
     /// Looks at what was looked at before a step that is taken back, or done again, if that has moved the view, or the
     /// times of keys, from `here` to `there`.
-    pub(super) fn look_again(&mut self, before: Look, here: &Scene, there: &Scene) {
+    pub(super) fn look_again(&mut self, before: ViewState, here: &Scene, there: &Scene) {
         if here.camera != there.camera {
             (self.wants_shot, self.is_flown) = (before.wants_shot, before.is_flown);
         }

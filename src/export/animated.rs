@@ -45,9 +45,9 @@ pub fn gif(
     let mut start = 0;
     let ends = clock_ends(sequence.frames_per_second(), sequence.frames.count());
     let frames = sequence.frames.iter().zip(ends).enumerate();
-    let shown = frames.filter_map(|(place, (frame, end))| {
+    let shown = frames.filter_map(|(index, (frame, end))| {
         let hundredths = end - std::mem::replace(&mut start, end);
-        (hundredths > 0).then_some((place + 1, (frame, hundredths)))
+        (hundredths > 0).then_some((index + 1, (frame, hundredths)))
     });
     let pack = |(frame, hundredths)| {
         let image = read(sequence, frame)?;
@@ -170,7 +170,7 @@ pub fn apng(
         Ok(image::DynamicImage::from(image).to_rgb8())
     };
     let frames = sequence.frames.iter().enumerate();
-    let frames = frames.map(|(place, frame)| (place + 1, frame));
+    let frames = frames.map(|(index, frame)| (index + 1, frame));
     in_order(sequence, (frames, go_on), open, |image| {
         writer.write_image_data(&image).map_err(wrong)
     })?;

@@ -17,7 +17,7 @@ use super::program::end_of;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, Coincidence, ColorPack, Disc, Extent, Light, Mesh, Object, Plane, Projection, Render,
+    Camera, Coincidence, ColorPack, Disc, Light, Mesh, Object, Overlap, Plane, Projection, Render,
     Scene, Shape, Sphere, Triangle, coincidences, unit,
 };
 use crate::trace::RenderControl;
@@ -280,7 +280,7 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     );
     let centre = scene.middle().unwrap_or_default();
     let is_seen = |found: &Coincidence| {
-        let is_hidden = matches!(found.extent, Extent::Standing | Extent::Touching);
+        let is_hidden = matches!(found.extent, Overlap::Standing | Overlap::Touching);
         !is_hidden && !scene.look_alike(found.later, found.earlier)
     };
     let found = coincidences(&scene.objects, centre);
@@ -406,8 +406,8 @@ mod tests {
         };
         scene.objects.push(copy.clone());
         assert!(!say_so(&scene), "they look alike");
-        let place = scene.objects.len() - 1;
-        scene.objects[place] = Object {
+        let index = scene.objects.len() - 1;
+        scene.objects[index] = Object {
             color_pack: "sphere 2".to_owned(),
             ..copy
         };

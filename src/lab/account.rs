@@ -9,13 +9,13 @@ use crate::words::capitalised;
 const ALIKE: f64 = 0.05;
 
 /// What a measured way does, and how it compares with the first, which is the default.
-pub fn account(study: &Study, place: usize) -> String {
-    let (Some(own), Some(default)) = (study.measurements.get(place), study.measurements.first())
+pub fn account(study: &Study, index: usize) -> String {
+    let (Some(own), Some(default)) = (study.measurements.get(index), study.measurements.first())
     else {
         return String::new();
     };
     let what = what(&own.candidate, &default.candidate);
-    if place == 0 {
+    if index == 0 {
         return what;
     }
     compared(own, default).map_or(what.clone(), |figures| format!("{what} {figures}"))

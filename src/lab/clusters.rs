@@ -42,11 +42,11 @@ impl Study {
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
     let mut clusters: Vec<((Timing, ErrorMetrics), Vec<usize>)> = Vec::new();
-    for (place, dot) in study.measurements.iter().enumerate() {
+    for (index, dot) in study.measurements.iter().enumerate() {
         let Some(figures) = known(dot) else { continue };
         // One that is certain does not stand behind one that is not.
-        let is_like = |place: usize| {
-            let other = &study.measurements[place];
+        let is_like = |index: usize| {
+            let other = &study.measurements[index];
             let (most, least) = (
                 other.rays_per_pixel.max(dot.rays_per_pixel),
                 other.rays_per_pixel.min(dot.rays_per_pixel),
@@ -57,8 +57,8 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
             .iter_mut()
             .find(|(first, cluster)| is_like(cluster[0]) && is_same(*first, figures))
         {
-            Some((_, cluster)) => cluster.push(place),
-            None => clusters.push((figures, vec![place])),
+            Some((_, cluster)) => cluster.push(index),
+            None => clusters.push((figures, vec![index])),
         }
     }
     clusters.into_iter().map(|(_, cluster)| cluster).collect()

@@ -20,18 +20,18 @@ const ONE_SURFACE: f64 = 1e-6;
 
 /// What a ray sees, and why.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Sight {
+pub enum Explanation {
     /// Nothing: the background's colour, linear 0–1.
     Sky(DVec3),
     /// The marker of a light of this name, in its full ambient colour.
     Marker(String, DVec3),
     /// A surface.
-    Surface(Box<Lit>),
+    Surface(Box<ShadingTerms>),
 }
 
 /// A place on an object, and the terms that add up to its colour: linear, 0–1 each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lit {
+pub struct ShadingTerms {
     /// The object's name.
     pub object: String,
     /// The name of its color pack.
@@ -48,14 +48,14 @@ pub struct Lit {
     /// Ambient intensity · ambient colour.
     pub ambient: DVec3,
     /// What each light that shines adds.
-    pub lights: Vec<Share>,
+    pub lights: Vec<LightTerm>,
     /// Σ intensity · specular colour, and what is seen in the mirror; `None` if it is none.
-    pub mirror: Option<(DVec3, Sight)>,
+    pub mirror: Option<(DVec3, Explanation)>,
 }
 
 /// What a light adds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Share {
+pub struct LightTerm {
     /// The light's name.
     pub light: String,
     /// Its intensity, 0–1.
@@ -70,7 +70,7 @@ pub struct Share {
     pub specular: DVec3,
 }
 
-impl Sight {
+impl Explanation {
     /// The colour: the sum of the terms, each channel at most 1.
     pub fn color(&self) -> DVec3 {
         match self {
@@ -80,7 +80,7 @@ impl Sight {
     }
 }
 
-impl Lit {
+impl ShadingTerms {
     fn color(&self) -> DVec3 {
         let lights = self
             .lights
@@ -95,8 +95,8 @@ impl Lit {
 
 /// What a ray with a unit direction sees in a scene, which must pass [`crate::scene::check`]. The faces of
 /// meshes are flat here.
-pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Sight {
-    look(scene, (origin, direction), 0)
+pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Explanation {
+    explain_ray(scene, (origin, direction), 0)
 }
 
 /// The colour that the picture has where this ray goes, linear 0–1, by the formulas and in the precision that the scene
@@ -125,20 +125,20 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
 pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let met = nearest(scene, origin, direction)?;
     match met.what {
-        What::Object(index) => Some((index, met.t)),
-        What::Marker(..) => None,
+        HitKind::Object(index) => Some((index, met.t)),
+        HitKind::Marker(..) => None,
     }
 }
 
 /// Something that a ray has met.
-struct Met<'a> {
+struct RayHit<'a> {
     t: f64,
     normal: DVec3,
-    what: What<'a>,
+    what: HitKind<'a>,
 }
 
 #[derive(Clone, Copy)]
-enum What<'a> {
+enum HitKind<'a> {
     Object(usize),
     Marker(&'a str, &'a str),
 }
@@ -147,17 +147,17 @@ fn linear(color: DVec3) -> DVec3 {
     color / 255.0
 }
 
-fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sight {
+fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Explanation {
     let Some(met) = nearest(scene, origin, direction) else {
-        return Sight::Sky(linear(scene.background));
+        return Explanation::Sky(linear(scene.background));
     };
     let met = in_its_place(scene, &met, (origin, direction)).unwrap_or(met);
     let pack_of = |name: &str| scene.color_packs.get(name).cloned().unwrap_or_default();
     let index = match met.what {
-        What::Marker(light, pack) => {
-            return Sight::Marker(light.to_owned(), linear(pack_of(pack).ambient));
+        HitKind::Marker(light, pack) => {
+            return Explanation::Marker(light.to_owned(), linear(pack_of(pack).ambient));
         }
-        What::Object(index) => index,
+        HitKind::Object(index) => index,
     };
     let object = &scene.objects[index];
     let pack = pack_of(&object.color_pack);
@@ -173,10 +173,10 @@ fn look(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Sig
     let mirror = (pack.reflective && bounces < scene.render.reflection_limit).then(|| {
         let mirrored = direction - normal * (2.0 * direction.dot(normal));
         let intensities: f64 = shining.map(|light| light.intensity).sum();
-        let seen = look(scene, (point, mirrored.normalize_or_zero()), bounces + 1);
+        let seen = explain_ray(scene, (point, mirrored.normalize_or_zero()), bounces + 1);
         (linear(pack.specular) * intensities, seen)
     });
-    Sight::Surface(Box::new(Lit {
+    Explanation::Surface(Box::new(ShadingTerms {
         object: object.name.clone(),
         pack: object.color_pack.clone(),
         point,
@@ -196,7 +196,7 @@ fn share(
     pack: &ColorPack,
     light: &crate::scene::Light,
     (point, normal, direction): (DVec3, DVec3, DVec3),
-) -> Share {
+) -> LightTerm {
     let arm = light.position - point;
     let towards = arm.normalize_or_zero();
     let cosine = normal.dot(towards);
@@ -210,7 +210,7 @@ fn share(
     } else {
         0.0
     };
-    Share {
+    LightTerm {
         light: light.name.clone(),
         intensity: light.intensity,
         cosine,
@@ -220,22 +220,22 @@ fn share(
     }
 }
 
-fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Met<'_>> {
+fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>> {
     let objects = scene.objects.iter().enumerate();
     let objects = objects
         .filter(|(_, object)| object.visible)
         .filter_map(|(index, object)| {
             let (t, normal) = meet(&object.shape, origin, direction)?;
-            let what = What::Object(index);
-            Some(Met { t, normal, what })
+            let what = HitKind::Object(index);
+            Some(RayHit { t, normal, what })
         });
     let lights = scene.lights.iter();
     let lights = lights.filter(|light| light.visible && scene.light_visualization);
     let markers = lights.filter_map(|light| {
         let marker = light.marker.as_ref()?;
         let (t, normal) = meet_ball(light.position, marker.radius, origin, direction)?;
-        let what = What::Marker(&light.name, &marker.color_pack);
-        Some(Met { t, normal, what })
+        let what = HitKind::Marker(&light.name, &marker.color_pack);
+        Some(RayHit { t, normal, what })
     });
     objects
         .chain(markers)
@@ -245,10 +245,10 @@ fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Met<'_>> {
 /// What lies in the surface that is met and comes before it in the list: that is seen.
 fn in_its_place<'a>(
     scene: &'a Scene,
-    met: &Met<'a>,
+    met: &RayHit<'a>,
     (origin, direction): (DVec3, DVec3),
-) -> Option<Met<'a>> {
-    let What::Object(later) = met.what else {
+) -> Option<RayHit<'a>> {
+    let HitKind::Object(later) = met.what else {
         return None;
     };
     let frame = Frame::of(scene);
@@ -262,8 +262,8 @@ fn in_its_place<'a>(
         if across > ONE_SURFACE * (met.t + (origin - centre).length()) {
             return None;
         }
-        let what = What::Object(pair.earlier);
-        Some(Met { t, normal, what })
+        let what = HitKind::Object(pair.earlier);
+        Some(RayHit { t, normal, what })
     })
 }
 

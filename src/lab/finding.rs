@@ -17,17 +17,17 @@ pub fn finding(study: &Study, name: &str) -> String {
         return format!("{name}: time against error");
     };
     let within = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
-    let quartiles = |place: usize| study.measurements[place].timing().map(|t| t.quartiles);
+    let quartiles = |index: usize| study.measurements[index].timing().map(|t| t.quartiles);
     // Its slower runs against the faster ones of the default: a busy machine beats nobody.
     let is_doubtful = study.measurements[0].is_doubtful();
-    let is_certain = |place: usize| match (quartiles(place), quartiles(0)) {
+    let is_certain = |index: usize| match (quartiles(index), quartiles(0)) {
         (Some((_, slow)), Some((fast, _))) => !is_doubtful && slow * BEATEN < fast,
         _ => false,
     };
-    let better = within(error * 1.01).filter(|&place| is_certain(place));
-    if let Some(place) = better {
-        let way = &study.measurements[place].candidate.name;
-        let [cost, own] = [costs[place].0, ms].map(short_number);
+    let better = within(error * 1.01).filter(|&index| is_certain(index));
+    if let Some(index) = better {
+        let way = &study.measurements[index].candidate.name;
+        let [cost, own] = [costs[index].0, ms].map(short_number);
         return format!(
             "{name}: {way} is as close as the default, in {cost}\u{a0}ms and not {own}"
         );
@@ -39,9 +39,9 @@ pub fn finding(study: &Study, name: &str) -> String {
         );
     }
     let decibels = decibels(error);
-    if let Some(place) = within(EIGHT_BIT_FLOOR) {
-        let way = &study.measurements[place].candidate.name;
-        let cost = short_number(costs[place].0);
+    if let Some(index) = within(EIGHT_BIT_FLOOR) {
+        let way = &study.measurements[index].candidate.name;
+        let cost = short_number(costs[index].0);
         return format!(
             "{name}: on average, {way} is below what 8 bits show at {cost}\u{a0}ms; the default has {decibels:.0}\u{a0}dB at {ms}"
         );

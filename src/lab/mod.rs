@@ -36,7 +36,7 @@ mod figure;
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::{clusters, costs_of_choices};
-pub use explain::{Lit, Share, Sight, drawn, explain, first_met, meet};
+pub use explain::{Explanation, LightTerm, ShadingTerms, drawn, explain, first_met, meet};
 pub use figure::{Figure, PictureLook};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, Way};

@@ -17,12 +17,12 @@ pub fn table(study: &Study) -> String {
         "  {:<22} {:>9} {:>7} {:>9} {:>10} {:>7} {:>7} {:>8}\n",
         "way", "ms", "spread", "rays/px", "RMSE", "dB", "max", "> 4/255"
     );
-    for place in order {
-        let dot = &study.measurements[place];
+    for index in order {
+        let dot = &study.measurements[index];
         let (Some(timing), Some(metrics)) = (dot.timing(), dot.metrics) else {
             continue;
         };
-        let mark = if front.contains(&place) { '*' } else { ' ' };
+        let mark = if front.contains(&index) { '*' } else { ' ' };
         let doubt = if dot.is_doubtful() { "?" } else { "" };
         let _ = writeln!(
             text,

@@ -279,8 +279,8 @@ fn add_strips(
     vertices: usize,
 ) -> Result<(), Fault> {
     for strip in corners.split(|&corner| corner == -1) {
-        for (place, &[a, b, c]) in strip.array_windows().enumerate() {
-            let corners = if place % 2 == 0 { [a, b, c] } else { [b, a, c] };
+        for (index, &[a, b, c]) in strip.array_windows().enumerate() {
+            let corners = if index % 2 == 0 { [a, b, c] } else { [b, a, c] };
             add_fan(faces, number, &corners, vertices)?;
         }
     }

@@ -162,10 +162,10 @@ fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
         }
         is_facet = word == b"facet";
         match read {
-            Some(place) => {
+            Some(index) => {
                 let number = str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-                point[place] = number.unwrap_or(f64::NAN);
-                read = Some(place + 1).filter(|next| *next < point.len());
+                point[index] = number.unwrap_or(f64::NAN);
+                read = Some(index + 1).filter(|next| *next < point.len());
                 if read.is_none() {
                     vertices.push(DVec3::from_array(point));
                 }

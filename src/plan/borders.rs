@@ -2,7 +2,7 @@
 
 use rayon::slice::ParallelSliceMut as _;
 
-use super::parts::parts_along_edges;
+use super::components::components_along_edges;
 use crate::simd::Vec3;
 
 /// Most faces on the way from one border of a mesh to the other.
@@ -30,7 +30,7 @@ impl Borders {
     ) -> Self {
         let edges = Edges::of(points);
         let parts =
-            |pairs: &mut dyn Iterator<Item = [u32; 2]>| parts_along_edges(points.len(), pairs);
+            |pairs: &mut dyn Iterator<Item = [u32; 2]>| components_along_edges(points.len(), pairs);
         let are_different = (1..points.len() as u32).any(|face| material(face) != material(0));
         let is_alike = |&[one, other]: &[u32; 2]| material(one) == material(other);
         let surface = Surface {

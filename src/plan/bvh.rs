@@ -72,12 +72,12 @@ impl Node {
         (1 << self.count) - 1
     }
 
-    /// The box at `place`.
+    /// The box at `index`.
     #[inline(always)]
-    pub fn bounds<R: Real>(&self, place: usize) -> BoundingBox<R> {
+    pub fn bounds<R: Real>(&self, index: usize) -> BoundingBox<R> {
         let corner = |planes: &[[f32; GROUP]; 3]| {
             let [x, y, z] = planes;
-            Vec3::new(x[place], y[place], z[place]).map(R::from_single)
+            Vec3::new(x[index], y[index], z[index]).map(R::from_single)
         };
         BoundingBox {
             low: corner(&self.planes[0]),
@@ -85,10 +85,10 @@ impl Node {
         }
     }
 
-    /// What the box at `place` holds.
+    /// What the box at `index` holds.
     #[inline(always)]
-    pub fn child(&self, place: usize) -> Child {
-        let held = self.children[place];
+    pub fn child(&self, index: usize) -> Child {
+        let held = self.children[index];
         if held & IS_NODE == 0 {
             Child::Member(held)
         } else {
@@ -104,53 +104,53 @@ impl Node {
 
     /// Takes over a box of another node, behind its own, of which there are fewer than [`GROUP`].
     #[inline(always)]
-    pub fn take(&mut self, from: &Self, place: usize) {
+    pub fn take(&mut self, from: &Self, index: usize) {
         for (planes, others) in self.planes.iter_mut().zip(&from.planes) {
             for (plane, other) in planes.iter_mut().zip(others) {
-                plane[self.count] = other[place];
+                plane[self.count] = other[index];
             }
         }
-        self.thickness[self.count] = from.thickness[place];
-        self.children[self.count] = from.children[place];
+        self.thickness[self.count] = from.thickness[index];
+        self.children[self.count] = from.children[index];
         self.count += 1;
     }
 
     /// Takes a box out; the last one comes into its place.
     #[inline(always)]
-    pub fn remove(&mut self, place: usize) {
+    pub fn remove(&mut self, index: usize) {
         let last = self.count - 1;
         for plane in self.planes.iter_mut().flatten() {
-            plane[place] = plane[last];
+            plane[index] = plane[last];
         }
-        self.thickness[place] = self.thickness[last];
-        self.children[place] = self.children[last];
+        self.thickness[index] = self.thickness[last];
+        self.children[index] = self.children[last];
         self.count = last;
     }
 
-    fn set<R: Real>(&mut self, place: usize, member: &Member<R>) {
+    fn set<R: Real>(&mut self, index: usize, member: &Member<R>) {
         let BoundingBox { low, high } = member.bounds;
         let low = low.to_array().map(below);
         let high = high.to_array().map(|high| -below(-high));
         for (planes, corner) in self.planes.iter_mut().zip([low, high]) {
             for (plane, coordinate) in planes.iter_mut().zip(corner) {
-                plane[place] = coordinate;
+                plane[index] = coordinate;
             }
         }
-        self.thickness[place] = below(member.thickness);
+        self.thickness[index] = below(member.thickness);
     }
 
-    /// The box at `place` as if it were a member.
-    fn get<R: Real>(&self, place: usize) -> Member<R> {
+    /// The box at `index` as if it were a member.
+    fn get<R: Real>(&self, index: usize) -> Member<R> {
         Member {
-            bounds: self.bounds(place),
-            thickness: R::from_single(self.thickness[place]),
+            bounds: self.bounds(index),
+            thickness: R::from_single(self.thickness[index]),
         }
     }
 
     /// All boxes together.
     fn around<R: Real>(&self) -> Member<R> {
-        (0..self.count).fold(Member::nothing(), |around, place| {
-            around.and(&self.get(place))
+        (0..self.count).fold(Member::nothing(), |around, index| {
+            around.and(&self.get(index))
         })
     }
 }
@@ -270,7 +270,7 @@ impl<R: Real> Bvh<R> {
     pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
         let root = self.nodes.first();
         root.into_iter()
-            .flat_map(|root| (0..root.count).map(|place| root.get(place).bounds))
+            .flat_map(|root| (0..root.count).map(|index| root.get(index).bounds))
     }
 }
 

@@ -75,12 +75,12 @@ fn slabs<R: Real>(
 ) -> ([R; GROUP], [R; GROUP]) {
     let (mut near, mut far) = ([R::ZERO; GROUP], [R::INFINITY; GROUP]);
     for axis in 0..3 {
-        for place in 0..GROUP {
-            let plane = |side: usize| R::from_single(planes[side][axis][place]);
+        for index in 0..GROUP {
+            let plane = |side: usize| R::from_single(planes[side][axis][index]);
             let low = (plane(0) - origin[axis]) * inverse[axis];
             let high = (plane(1) - origin[axis]) * inverse[axis];
-            near[place] = near[place].max(low.min(high));
-            far[place] = far[place].min(low.max(high));
+            near[index] = near[index].max(low.min(high));
+            far[index] = far[index].min(low.max(high));
         }
     }
     (near, far)

@@ -121,8 +121,8 @@ pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
     let visible = scene.visible_objects();
     let pieces = visible.filter_map(|object| object.shape.plane_piece());
     let pieces: Vec<_> = pieces.take(MOST_PIECES).collect();
-    pieces.iter().enumerate().any(|(place, piece)| {
-        let mut others = pieces[place + 1..].iter();
+    pieces.iter().enumerate().any(|(index, piece)| {
+        let mut others = pieces[index + 1..].iter();
         others.any(|other| {
             piece.is_beside(other, MIN_GAP_OF_PIECES * extent) && !piece.coincides(other, centre)
         })
@@ -142,9 +142,9 @@ pub fn has_twins(scene: &Scene, extent: f64) -> bool {
     }
     spheres.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
     let nearest = MIN_GAP_PER_EXTENT * extent;
-    spheres.iter().enumerate().any(|(place, (along, one))| {
+    spheres.iter().enumerate().any(|(index, (along, one))| {
         let least = nearest.min(MIN_GAP_PER_RADIUS * one.radius);
-        let others = spheres[place + 1..].iter();
+        let others = spheres[index + 1..].iter();
         let near = others.take_while(|(other, _)| other - along < least);
         let mut others = near.map(|(_, other)| other);
         others.any(|other| one.gap(other) < least && !one.is_same(other))

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Coincidence, Extent, List, Object, Projection, Scene, Shape, unit};
+use crate::scene::{Coincidence, List, Object, Overlap, Projection, Scene, Shape, unit};
 
 /// Most objects that hold lights or the eye and are kept out of the tree; of more, none is.
 const MOST_APART: usize = 256;
@@ -171,7 +171,7 @@ impl Contacts {
     }
 
     fn add(&mut self, found: Coincidence) {
-        if found.extent == Extent::Whole {
+        if found.extent == Overlap::Whole {
             self.covered.insert(found.later);
         } else {
             self.shared.push(found);
@@ -185,8 +185,8 @@ impl Contacts {
     }
 
     /// Whether an object is told by the number that it has in a list.
-    pub fn is_told(&self, place: usize) -> bool {
-        self.apart.contains(&place) || self.sharing.contains(&place)
+    pub fn is_told(&self, index: usize) -> bool {
+        self.apart.contains(&index) || self.sharing.contains(&index)
     }
 
     fn set_apart(&mut self, objects: &List<Object>) {
@@ -240,7 +240,7 @@ fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
     let at = |point: &DVec3| {
         let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_ROUND;
         let mut balls = balls.iter();
-        balls.find_map(|(place, ball)| holds(ball).then_some(*place))
+        balls.find_map(|(index, ball)| holds(ball).then_some(*index))
     };
     points.iter().map(at).collect()
 }

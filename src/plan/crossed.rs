@@ -74,8 +74,8 @@ impl Bvh<f64> {
         let mut nodes = vec![0_u32];
         while let Some(node) = nodes.pop().and_then(|node| self.nodes.get(node as usize)) {
             tests.boxes += node.count as u64;
-            for place in (0..node.count).filter(|&place| is_passed(&node.bounds(place), &ray)) {
-                match node.child(place) {
+            for index in (0..node.count).filter(|&index| is_passed(&node.bounds(index), &ray)) {
+                match node.child(index) {
                     Child::Member(member) => met.push(member),
                     Child::Node(inner) => nodes.push(inner),
                 }

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::idle::KeptIdle;
+use super::culled_faces::KeptCulledFaces;
 use super::pack::Plan;
 use super::request::RenderRequest;
 use super::solids::Solids;
-use crate::primitive::Spared;
+use crate::primitive::Culling;
 use crate::scene::{Projection, Scene};
 use crate::simd::{Real, Vec3};
 
@@ -18,7 +18,7 @@ impl<R: Real> Plan<R> {
         let turned_away = |point: DVec3| {
             let away = triangles.iter().zip(solids.turned_away(point));
             // Single precision may close what is open.
-            away.map(|(face, is_away)| is_away && face.spared == Spared::Far)
+            away.map(|(face, is_away)| is_away && face.culling == Culling::Far)
                 .collect()
         };
         let projection = request.projection_of(&scene.camera);
@@ -36,7 +36,7 @@ impl<R: Real> Plan<R> {
         &mut self,
         scene: &Scene,
         request: &RenderRequest,
-        kept: &mut KeptIdle<R>,
+        kept: &mut KeptCulledFaces<R>,
     ) {
         let projection = request.projection_of(&scene.camera);
         let Some(geometry) = &self.geometry else {
@@ -54,15 +54,15 @@ impl<R: Real> Plan<R> {
         });
         let seen: Vec<bool> = seen.collect();
         for light in &mut self.lights {
-            let mut holding = std::mem::take(&mut light.idle_faces).into_iter();
+            let mut holding = std::mem::take(&mut light.culled_faces).into_iter();
             let meshes = geometry.meshes.iter().zip(&seen);
-            let idle = meshes.map(|(mesh, seen)| {
+            let culled_faces = meshes.map(|(mesh, seen)| {
                 holding.next().flatten().or_else(|| {
                     let are_idle = *seen && mesh.is_seen_from_outside(light.position);
                     are_idle.then(|| kept.towards(light.position, mesh))
                 })
             });
-            light.idle_faces = idle.collect();
+            light.culled_faces = culled_faces.collect();
         }
     }
 }

@@ -7,11 +7,11 @@ use glam::DVec3;
 
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
+use super::components::things;
 use super::contacts::LightContacts;
-use super::idle::KeptIdle;
+use super::culled_faces::KeptCulledFaces;
 use super::meshes::Meshes;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
-use super::parts::things;
 use super::request::RenderRequest;
 use super::solids::faces_of_solids;
 use crate::primitive::{
@@ -69,7 +69,7 @@ pub struct Kept<R> {
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
     /// Meshes that are ready for the next picture, beside those of the last one.
     others: Meshes<R>,
-    idle: KeptIdle<R>,
+    culled_faces: KeptCulledFaces<R>,
 }
 
 /// What the picture before was planned from, which the next one may need as well.
@@ -159,8 +159,8 @@ impl<R: Real> Kept<R> {
     }
 
     /// The faces that cast no shadows of their own.
-    pub fn idle(&mut self) -> &mut KeptIdle<R> {
-        &mut self.idle
+    pub fn culled_faces(&mut self) -> &mut KeptCulledFaces<R> {
+        &mut self.culled_faces
     }
 
     /// The objects of a scene that fill the same surface; the last ones, if none has changed.
@@ -373,9 +373,9 @@ impl<R: Real> Geometry<R> {
     }
 
     /// The number of the primitive that the object at a place in the scene's list became.
-    pub fn number_at(&self, place: usize) -> Option<usize> {
+    pub fn number_at(&self, index: usize) -> Option<usize> {
         let mut kinds = self.primitives.firsts().into_iter().zip(&self.places);
-        kinds.find_map(|(first, places)| Some(first + places.binary_search(&place).ok()?))
+        kinds.find_map(|(first, places)| Some(first + places.binary_search(&index).ok()?))
     }
 
     /// The mesh that the primitive of a number belongs to, counted from that of the first primitive.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::bvh::{Bvh, Child};
-use super::idle::IdleFaces;
+use super::culled_faces::CulledFaces;
 use super::pack::Plan;
 use super::packed_mesh::{MeshInstance, PackedMesh};
 use super::request::{Model, RenderRequest};
@@ -51,18 +51,22 @@ impl<R: Real> Plan<R> {
             direction: unit(scene.camera.look_at).filter(|_| is_parallel),
         });
         for light in &mut self.lights {
-            light.idle_faces = holding(Place {
+            light.culled_faces = holding(Place {
                 point: light.place,
                 direction: None,
             });
-            light.may_touch |= light.idle_faces.iter().any(Option::is_some);
+            light.may_touch |= light.culled_faces.iter().any(Option::is_some);
         }
     }
 }
 
 impl Place {
     /// The faces of a mesh that hold it; none where no face does.
-    fn held_by<R: Real>(&self, instance: &MeshInstance<R>, mesh: &Mesh) -> Option<Arc<IdleFaces>> {
+    fn held_by<R: Real>(
+        &self,
+        instance: &MeshInstance<R>,
+        mesh: &Mesh,
+    ) -> Option<Arc<CulledFaces>> {
         let packed = &*instance.mesh;
         let near = Near::new(self, packed, mesh);
         let may_hold = meets_any(
@@ -82,7 +86,7 @@ impl Place {
             .map(|(corners, _)| sorted(corners.map(|corner| packed.place(corner))))
             .collect();
         let is_held = |face: &PackedTriangle<R>| holding.contains(&sorted(face.corners));
-        (!holding.is_empty()).then(|| Arc::new(IdleFaces::of(packed, is_held)))
+        (!holding.is_empty()).then(|| Arc::new(CulledFaces::of(packed, is_held)))
     }
 
     fn is_in(&self, piece: &PlanePiece) -> bool {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::culled_faces::CulledFaces;
 use super::geometry::Geometry;
-use super::idle::IdleFaces;
 use super::plane_occluders::PlaneOccluder;
 use super::request::Model;
 use crate::primitive::roundings;
@@ -25,7 +25,7 @@ pub struct PointLight<R> {
     pub shadow_culled_faces: Vec<bool>,
     /// For each mesh of the geometry, the faces that hold the light, or cast no shadow which others do not, if some are
     /// known.
-    pub idle_faces: Vec<Option<Arc<IdleFaces>>>,
+    pub culled_faces: Vec<Option<Arc<CulledFaces>>>,
     /// Numbers of primitives that hold the light: no ray is held against them to see whether they are before it.
     pub holders: Vec<usize>,
     /// The ball among them, if one is.
@@ -109,7 +109,7 @@ pub fn pack_lights<R: Real>(
                 place: light.position,
                 intensity: R::from_f64(light.intensity),
                 shadow_culled_faces: Vec::new(),
-                idle_faces: Vec::new(),
+                culled_faces: Vec::new(),
                 holders: holders(index),
                 ball: HoldingBall::new(ball, light.position),
                 rounding: position.max_abs() * roundings() + R::from_f64(in_world),

@@ -10,7 +10,7 @@ mod bvh;
 
 mod cast;
 
-mod parts;
+mod components;
 
 mod borders;
 
@@ -24,7 +24,7 @@ mod packed_mesh;
 
 mod meshes;
 
-mod idle;
+mod culled_faces;
 
 mod request;
 
@@ -72,10 +72,10 @@ pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
 pub use contacts::Others;
 pub use crossed::tests_spared;
+pub use culled_faces::CulledFaces;
 pub use flats::AskFlat;
 pub use geometry::{Geometry, Kept, Planner};
 pub use hit_order::HitOrder;
-pub use idle::IdleFaces;
 pub use lights::PointLight;
 pub use materials::{Material, Surface, exponent};
 pub use needs::{ACCELERATOR, Need, needs};

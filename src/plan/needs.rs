@@ -104,8 +104,8 @@ fn reflections(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "reflections";
     let visible = || scene.visible_objects();
     let is_mirror = |object: &&Object| {
-        let place = scene.color_packs.get_index_of(&object.color_pack);
-        let surface = place.and_then(|place| plan.materials[place].surface.as_ref());
+        let index = scene.color_packs.get_index_of(&object.color_pack);
+        let surface = index.and_then(|index| plan.materials[index].surface.as_ref());
         surface.is_some_and(|surface| surface.mirror.is_some())
     };
     let mirrors = visible().filter(is_mirror).count();

@@ -7,10 +7,10 @@ use glam::DVec3;
 
 use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
+use super::culled_faces::CulledFaces;
 use super::flats::Flats;
 use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
 use super::hit_order::HitOrder;
-use super::idle::IdleFaces;
 use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
 use super::plane_occluders::classify_planes;
@@ -81,7 +81,7 @@ pub struct Plan<R> {
     /// Numbers of primitives whose planes hold the eye, or all of where parallel rays start: no camera ray needs them.
     pub edge_on: Vec<usize>,
     /// For each mesh of the geometry, the faces that no camera ray needs for the same reason, if there are any.
-    pub unseen_faces: Vec<Option<Arc<IdleFaces>>>,
+    pub unseen_faces: Vec<Option<Arc<CulledFaces>>>,
     /// The number of what the camera's rays start on.
     pub eye_on: Option<usize>,
     /// What others lie in the surface of, which are seen there; sorted by its numbers.
@@ -169,8 +169,8 @@ impl<R: Real> Plan<R> {
             plan.take_geometry(geometry, projector, centre);
         }
         let numbers = plan.pack(scene, &contacts, projector);
-        let is_apart = |place: &usize| contacts.apart().contains(place);
-        let number = |place: &usize| numbers.get(place).copied().filter(|_| is_apart(place));
+        let is_apart = |index: &usize| contacts.apart().contains(index);
+        let number = |index: &usize| numbers.get(index).copied().filter(|_| is_apart(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
         plan.tie(scene, (request, &contacts), &numbers);
@@ -178,7 +178,7 @@ impl<R: Real> Plan<R> {
         let ball = |light: usize| {
             let ball = contacts.lights.on_balls.get(light).copied().flatten();
             // Where it stands in a tree, it is held against rays like everything else.
-            ball.filter(|place| number(place).is_some())
+            ball.filter(|index| number(index).is_some())
         };
         let holders = |light: usize| {
             let flat = contacts.lights.held_by.get(light).into_iter().flatten();
@@ -198,10 +198,10 @@ impl<R: Real> Plan<R> {
             // What leaks through a face must not find that those behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
-                plan.drop_lit_faces(scene, request, kept.idle());
+                plan.drop_lit_faces(scene, request, kept.culled_faces());
             }
         }
-        kept.idle().end();
+        kept.culled_faces().end();
         plan
     }
 

@@ -12,7 +12,7 @@ use rayon::iter::{
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
-use super::parts::{first_of_parts, volume};
+use super::components::{first_of_parts, volume};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::measures;
 use crate::mesh::Triangles;

@@ -160,9 +160,9 @@ impl Around {
         let mut free = firsts.clone();
         let mut sorted = vec![(0, 0); faces.len() * 3];
         for (face, corners) in faces.iter().enumerate() {
-            for (place, &corner) in corners.iter().enumerate() {
+            for (index, &corner) in corners.iter().enumerate() {
                 let next = &mut free[corner as usize];
-                sorted[*next as usize] = (face as u32, place as u8);
+                sorted[*next as usize] = (face as u32, index as u8);
                 *next += 1;
             }
         }

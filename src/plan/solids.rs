@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::parts::parts;
+use super::components::parts;
 use crate::mesh::are_closed;
 use crate::primitive::{Corner, PackedTriangle, corner};
 use crate::scene::{Scene, Shape};

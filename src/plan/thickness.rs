@@ -6,7 +6,7 @@ use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 use super::borders::Borders;
 use super::bvh::{Bvh, Node};
 use super::cast::cast;
-use super::parts::inside_out;
+use super::components::inside_out;
 use super::tips::tips;
 use crate::primitive::{PackedTriangle, Tip};
 use crate::simd::Vec3;
@@ -87,10 +87,10 @@ impl Faces<'_> {
     /// rod are as far apart as it is long.
     fn least_depth(&self, node: &Node) -> f64 {
         let (mut least, mut measured) = (f64::INFINITY, Vec::new());
-        for (place, face) in node.members().enumerate() {
+        for (index, face) in node.members().enumerate() {
             let normal = self.triangles[face as usize].normal;
             let is_alike = |other: &Vec3<f64>| ALIKE < normal.dot(*other);
-            if place.is_multiple_of(MEASURED) || !measured.iter().any(is_alike) {
+            if index.is_multiple_of(MEASURED) || !measured.iter().any(is_alike) {
                 least = least.min(self.depth(face as usize));
                 measured.push(normal);
             }

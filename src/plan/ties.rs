@@ -10,7 +10,7 @@ use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
 use crate::primitive::BoundingBox;
-use crate::scene::{Coincidence, Extent, Projection, Scene};
+use crate::scene::{Coincidence, Overlap, Projection, Scene};
 use crate::simd::Real;
 
 /// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
@@ -60,13 +60,13 @@ impl<R: Real> Plan<R> {
     }
 
     /// The numbers of the object at a place in the scene's list.
-    fn numbers_at(&self, place: usize, listed: &HashMap<usize, usize>) -> Option<Range<usize>> {
-        if let Some(&number) = listed.get(&place) {
+    fn numbers_at(&self, index: usize, listed: &HashMap<usize, usize>) -> Option<Range<usize>> {
+        if let Some(&number) = listed.get(&index) {
             return Some(number..number + 1);
         }
         let (first, geometry) = (self.primitives.len(), self.geometry.as_ref()?);
-        let mesh = self.mesh_at(place).map(MeshInstance::numbers);
-        let loose = || geometry.number_at(place).map(|number| number..number + 1);
+        let mesh = self.mesh_at(index).map(MeshInstance::numbers);
+        let loose = || geometry.number_at(index).map(|number| number..number + 1);
         let inner = mesh.or_else(loose)?;
         Some(first + inner.start..first + inner.end)
     }
@@ -75,10 +75,10 @@ impl<R: Real> Plan<R> {
     /// comes from the eye reaches the other side of an endless plane. One that starts inside of it, or on it, may.
     fn hides(&self, scene: &Scene, found: &Coincidence) -> bool {
         let places = [found.later, found.earlier];
-        let mesh = places.into_iter().find_map(|place| self.mesh_at(place));
+        let mesh = places.into_iter().find_map(|index| self.mesh_at(index));
         let plane = places
             .into_iter()
-            .find_map(|place| scene.objects[place].shape.plane_piece());
+            .find_map(|index| scene.objects[index].shape.plane_piece());
         let (Some(mesh), Some(plane)) = (mesh, plane) else {
             return false;
         };
@@ -90,7 +90,7 @@ impl<R: Real> Plan<R> {
         let eye = eye - self.centre;
         let little = DVec3::splat(CLEARANCE * (low.abs().max(high.abs()).max_element()));
         let is_beside = eye.cmplt(low - little).any() || eye.cmpgt(high + little).any();
-        found.extent == Extent::Standing && mesh.is_solid() && is_between && is_beside
+        found.extent == Overlap::Standing && mesh.is_solid() && is_between && is_beside
     }
 
     /// The mesh that is at this place in the scene's list.

@@ -1,6 +1,6 @@
 //! Where meshes end in something narrower than they are: their borders, and sharp points.
 
-use crate::primitive::{PackedTriangle, Tip, Which};
+use crate::primitive::{PackedTriangle, Tip, Vertex};
 use crate::simd::Vec3;
 
 /// Cosine of the angle that all edges of a sharp point make with their middle, at least.
@@ -13,7 +13,7 @@ const MOST: u32 = 128;
 
 /// The edges of a point.
 #[derive(Clone, Copy)]
-struct Point {
+struct PointEdges {
     faces: u32,
     /// The sum of their unit directions.
     axis: Vec3<f64>,
@@ -23,9 +23,9 @@ struct Point {
     greatest: f64,
 }
 
-impl Point {
+impl PointEdges {
     /// What the faces around it have there, as far as they have it as their corner `which`.
-    fn tip(&self, which: Which) -> Tip {
+    fn tip(&self, which: Vertex) -> Tip {
         if self.least <= SHARP || MOST < self.faces {
             return Tip::Nowhere;
         }
@@ -47,7 +47,7 @@ pub fn tips(
 ) -> Vec<Tip> {
     let around = around_points(triangles, points);
     let tip = |corners: &[u32; 3]| {
-        let tips = [0, 1, 2].map(|at| around[corners[at] as usize].tip(Which::ALL[at]));
+        let tips = [0, 1, 2].map(|at| around[corners[at] as usize].tip(Vertex::ALL[at]));
         let mut tips = tips.into_iter().filter(|tip| *tip != Tip::Nowhere);
         match (tips.next(), tips.next()) {
             (only, None) => only.unwrap_or(Tip::Nowhere),
@@ -62,9 +62,9 @@ pub fn tips(
 }
 
 /// The edges of each point.
-fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<Point> {
+fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<PointEdges> {
     let count = points.iter().flatten().max().map_or(0, |last| last + 1);
-    let empty = Point {
+    let empty = PointEdges {
         faces: 0,
         axis: Vec3::splat(0.0),
         least: 1.0,
@@ -145,7 +145,7 @@ mod tests {
         assert!(are_all(&open, Tip::Narrow), "{open:?}");
         // Two fifths as wide as it is far from its top, which each face has as its first corner.
         let cone = pyramid(40, 5.0, true);
-        assert!(are_all(&cone[..40], Tip::round(Which::A, 0.4)), "{cone:?}");
+        assert!(are_all(&cone[..40], Tip::round(Vertex::A, 0.4)), "{cone:?}");
         assert!(are_all(&cone[40..], Tip::Nowhere), "{cone:?}");
         let rounder = pyramid(MOST + 1, 5.0, true);
         assert!(are_all(&rounder, Tip::Nowhere), "{rounder:?}");

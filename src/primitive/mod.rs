@@ -36,6 +36,6 @@ pub use projector::{Extent, Projector, Rectangle};
 pub use ray::{Ray, inverse};
 pub use sphere::{PackedSphere, Round};
 pub use triangle::{
-    CornerNormals, Curved, Flat, PackedTriangle, Spared, Tip, Which, corner, count_corner_users,
+    CornerNormals, Culling, Curved, Flat, PackedTriangle, Tip, Vertex, corner, count_corner_users,
     number_corners,
 };

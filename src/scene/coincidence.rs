@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::list::List;
-pub use super::mesh_coincidence::{Coincidence, Extent};
+pub use super::mesh_coincidence::{Coincidence, Overlap};
 use super::mesh_coincidence::{counts_down, meet, mesh_coincidences, widened};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape, Sphere};
@@ -33,7 +33,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
         }
         if let Some(flat) = object.shape.plane_piece() {
             match object.shape.bounds() {
-                Some(bounds) => pieces.push(Piece {
+                Some(bounds) => pieces.push(FlatPiece {
                     index,
                     flat,
                     around: widened(bounds),
@@ -54,8 +54,8 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
                 later: later.0,
                 earlier: earlier.0,
                 extent: match earlier.1.outline {
-                    Outline::Endless => Extent::Whole,
-                    Outline::Triangle(_) | Outline::Disc(_) => Extent::Part,
+                    Outline::Endless => Overlap::Whole,
+                    Outline::Triangle(_) | Outline::Disc(_) => Overlap::Part,
                 },
             });
         }
@@ -104,7 +104,7 @@ fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
         found.extend(later.map(|later| Coincidence {
             later,
             earlier: earliest,
-            extent: Extent::Whole,
+            extent: Overlap::Whole,
         }));
         for (place, _) in same {
             is_known[place] = true;
@@ -113,7 +113,7 @@ fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
 }
 
 /// A flat object that ends.
-struct Piece {
+struct FlatPiece {
     index: usize,
     flat: PlanePiece,
     /// The box around it, a little wider than it is.

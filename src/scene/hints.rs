@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
-use super::coincidence::{Coincidence, Extent, coincidences};
+use super::coincidence::{Coincidence, Overlap, coincidences};
 use super::direction::unit;
 use super::frame::Frame;
 use super::object::Object;
@@ -130,8 +130,8 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
             extent,
         } = found;
         let looks_alike = scene.look_alike(later, earlier);
-        let is_hidden = matches!(extent, Extent::Standing | Extent::Touching);
-        if is_hidden || (extent == Extent::Faces && looks_alike) {
+        let is_hidden = matches!(extent, Overlap::Standing | Overlap::Touching);
+        if is_hidden || (extent == Overlap::Faces && looks_alike) {
             continue; // Nobody sees which of them is in front.
         }
         if last.replace(later) == Some(later) {
@@ -142,7 +142,7 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
         let (name, other) = (&object.name, &other.name);
         let words = if is_twice {
             format!("{name} is in the same place as {other}")
-        } else if extent == Extent::Faces {
+        } else if extent == Overlap::Faces {
             format!("{name} shares faces with {other}, which comes first and is seen there")
         } else {
             format!("{name} lies in {other}, which comes first and is seen there")

@@ -187,7 +187,7 @@ impl Animation {
         let tracks = self.tracks.iter().enumerate();
         let tracks = tracks.filter(|(_, track)| wanted.contains(&track.target));
         tracks
-            .map(|(place, track)| (&track.target, place))
+            .map(|(index, track)| (&track.target, index))
             .collect()
     }
 

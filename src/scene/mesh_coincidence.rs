@@ -33,12 +33,12 @@ pub struct Coincidence {
     /// The earlier one.
     pub earlier: usize,
     /// How much of the later one that is.
-    pub extent: Extent,
+    pub extent: Overlap,
 }
 
 /// How much of an object lies in the surface of another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Extent {
+pub enum Overlap {
     /// Nothing of it is left to be seen.
     Whole,
     /// Some of what is flat lies in what is flat.
@@ -54,14 +54,14 @@ pub enum Extent {
 /// What of a scene's visible meshes lies in something; coordinates count from `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
-    let mut ended: Vec<Placed> = visible
+    let mut ended: Vec<BoxedSurface> = visible
         .filter(|(_, object)| object.visible)
-        .filter_map(|(index, object)| Placed::of(index, object))
+        .filter_map(|(index, object)| BoxedSurface::of(index, object))
         .collect();
     let endless: Vec<_> = ended.extract_if(.., |one| one.bounds.is_none()).collect();
     ended.sort_by(|one, other| one.start().total_cmp(&other.start()));
     let mut found = Vec::new();
-    let mut add = |one: &Placed, other: &Placed, extent: Extent| {
+    let mut add = |one: &BoxedSurface, other: &BoxedSurface, extent: Overlap| {
         found.push(Coincidence {
             later: one.index.max(other.index),
             earlier: one.index.min(other.index),
@@ -87,8 +87,8 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         pairs: MOST_PAIRS,
         pairs_of_sides: MOST_PAIRS,
     };
-    let all: Vec<&Placed> = ended.iter().collect();
-    let meshes: Vec<&Placed> = ended.iter().filter(|one| one.is_mesh()).collect();
+    let all: Vec<&BoxedSurface> = ended.iter().collect();
+    let meshes: Vec<&BoxedSurface> = ended.iter().filter(|one| one.is_mesh()).collect();
     let (mut seen, mut boxes) = (0, MOST_BOXES);
     for (place, one) in ended.iter().enumerate() {
         seen += usize::from(one.is_mesh());
@@ -110,7 +110,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
 }
 
 /// A flat object or a mesh, and the box around it, a little wider than it is; none if it has no end.
-struct Placed<'a> {
+struct BoxedSurface<'a> {
     index: usize,
     shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
@@ -118,7 +118,7 @@ struct Placed<'a> {
     side: OnceCell<Option<f64>>,
 }
 
-impl<'a> Placed<'a> {
+impl<'a> BoxedSurface<'a> {
     fn of(index: usize, object: &'a Object) -> Option<Self> {
         let shape = &object.shape;
         let is_flat = || shape.plane_piece().is_some();
@@ -205,7 +205,7 @@ fn on_plane(
     mesh: &Mesh,
     plane: &PlanePiece,
     (centre, left): (DVec3, &mut usize),
-) -> Option<Extent> {
+) -> Option<Overlap> {
     let triangles = mesh.source.triangles();
     let transform = mesh.transform();
     let height = |point: DVec3| {
@@ -244,9 +244,9 @@ fn on_plane(
     let is_beside = -little <= lowest || highest <= little;
     let is_flat = highest - lowest <= 2.0 * little;
     Some(if is_beside && !is_flat {
-        Extent::Standing
+        Overlap::Standing
     } else {
-        Extent::Faces
+        Overlap::Faces
     })
 }
 
@@ -265,12 +265,12 @@ type Boxed = (PlanePiece, (DVec3, DVec3));
 impl Search {
     /// How two objects that end have flat pieces in one plane; `None` if they have none, or where that is too much to
     /// look at.
-    fn extent(&mut self, one: &Placed, other: &Placed) -> Option<Extent> {
+    fn extent(&mut self, one: &BoxedSurface, other: &BoxedSurface) -> Option<Overlap> {
         let (around, other_around) = (one.bounds?, other.bounds?);
         if !meet(around, other_around) {
             return None;
         }
-        let faces = |placed: &Placed| match placed.shape {
+        let faces = |placed: &BoxedSurface| match placed.shape {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
             _ => 1,
         };
@@ -293,9 +293,9 @@ impl Search {
         });
         std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
         Some(if are_apart {
-            Extent::Touching
+            Overlap::Touching
         } else {
-            Extent::Faces
+            Overlap::Faces
         })
     }
 
@@ -347,7 +347,7 @@ mod tests {
         }
     }
 
-    fn found(one: impl Into<Shape>, other: impl Into<Shape>) -> Option<Extent> {
+    fn found(one: impl Into<Shape>, other: impl Into<Shape>) -> Option<Overlap> {
         let objects = [
             Object::new("one", "red", one.into()),
             Object::new("other", "blue", other.into()),
@@ -370,8 +370,8 @@ mod tests {
     #[test]
     fn a_sheet_lies_in_a_floor_and_a_box_stands_on_it() {
         let flat = sheet(7, 50.0, DVec3::ZERO, DVec3::ZERO);
-        assert_eq!(found(flat.clone(), floor()), Some(Extent::Faces));
-        assert_eq!(found(floor(), flat.clone()), Some(Extent::Faces));
+        assert_eq!(found(flat.clone(), floor()), Some(Overlap::Faces));
+        assert_eq!(found(floor(), flat.clone()), Some(Overlap::Faces));
         let higher = sheet(7, 50.0, DVec3::Y * 1e-3, DVec3::ZERO);
         assert_eq!(found(higher, floor()), None);
         let turned = sheet(7, 50.0, DVec3::ZERO, DVec3::X);
@@ -381,8 +381,8 @@ mod tests {
             ..Mesh::of((crate::mesh::SOLIDS[0].make)(2.0))
         };
         let half = cube(0.0).bounds().map_or(0.0, |(_, high)| high.y);
-        assert_eq!(found(cube(half), floor()), Some(Extent::Standing));
-        assert_eq!(found(cube(-half), floor()), Some(Extent::Standing));
+        assert_eq!(found(cube(half), floor()), Some(Overlap::Standing));
+        assert_eq!(found(cube(-half), floor()), Some(Overlap::Standing));
         assert_eq!(found(cube(0.3 * half), floor()), None);
         assert_eq!(found(cube(9.0), floor()), None);
     }
@@ -399,18 +399,18 @@ mod tests {
         let lower = cube(0.0, 0.0);
         assert_eq!(
             found(lower.clone(), cube(0.3, side)),
-            Some(Extent::Touching)
+            Some(Overlap::Touching)
         );
         // Their fronts are one surface.
-        assert_eq!(found(lower.clone(), cube(0.3, 0.3)), Some(Extent::Faces));
+        assert_eq!(found(lower.clone(), cube(0.3, 0.3)), Some(Overlap::Faces));
         let mirrored = Mesh {
             scale: DVec3::new(1.0, -1.0, 1.0),
             ..cube(0.3, side)
         };
-        assert_eq!(found(lower.clone(), mirrored), Some(Extent::Touching));
+        assert_eq!(found(lower.clone(), mirrored), Some(Overlap::Touching));
         // A sheet has no inside.
         let lid = sheet(1, 1.0, DVec3::Y * side / 2.0, DVec3::X * 180.0);
-        assert_eq!(found(lower, lid), Some(Extent::Faces));
+        assert_eq!(found(lower, lid), Some(Overlap::Faces));
     }
 
     #[test]
@@ -419,18 +419,18 @@ mod tests {
         let at = DVec3::new(1.0, 3.0, 2.0);
         let sheets =
             |other: DVec3| found(sheet(7, 50.0, at, turned), sheet(11, 30.0, other, turned));
-        assert_eq!(sheets(at), Some(Extent::Faces));
+        assert_eq!(sheets(at), Some(Overlap::Faces));
         let one = sheet(7, 50.0, at, turned);
         let (across, along) = (one.turn() * DVec3::Y, one.turn() * DVec3::X);
         assert_eq!(sheets(at + across * 1e-3), None);
-        assert_eq!(sheets(at + along * 39.9), Some(Extent::Faces));
+        assert_eq!(sheets(at + along * 39.9), Some(Overlap::Faces));
         assert_eq!(sheets(at + along * 40.1), None, "beside it");
         let disc = |center: DVec3| Disc {
             center,
             normal: across,
             radius: 1.0,
         };
-        assert_eq!(found(disc(at), one.clone()), Some(Extent::Faces));
+        assert_eq!(found(disc(at), one.clone()), Some(Overlap::Faces));
         assert_eq!(found(disc(at + across), one), None);
     }
 }

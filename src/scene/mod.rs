@@ -40,7 +40,7 @@ mod keys;
 
 mod whole;
 
-mod worn;
+mod pack_usage;
 
 mod frame;
 
@@ -75,7 +75,7 @@ pub use animation::{
 pub use aspect::Aspect;
 pub use camera::{Bookmark, Camera, Framing, Projection};
 pub use check::{MAX_COORDINATE, MAX_FACTOR, PROJECTION_DISTANCES, Problem, check, check_edit};
-pub use coincidence::{Coincidence, Extent, coincidences};
+pub use coincidence::{Coincidence, Overlap, coincidences};
 pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};

@@ -10,11 +10,11 @@ use super::engine::{Engine, Reference, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
+use super::messages::BandMessages;
 use super::sampler::Sampler;
-use super::shelf::Shelf;
 use super::stats::Rays;
 use super::tile::{Grid, Tile, TileColors};
-use super::told::Hearing;
+use super::workspace_pool::WorkspacePool;
 use crate::plan::{Plan, Region, Show};
 use crate::scene::Sampling;
 use crate::simd::{SimdFloat, SimdReal, WithSimd};
@@ -42,17 +42,17 @@ pub struct Band<'a, R> {
     /// How they are sampled.
     pub sampling: Sampling,
     /// What its pixels are told by those beside them.
-    pub hearing: Hearing<'a>,
+    pub messages: BandMessages<'a>,
     /// What traces again what is in doubt.
     pub reference: Option<&'a dyn Reference>,
     /// Memory of other bands of the plan.
-    pub shelf: &'a Shelf,
+    pub workspace_pool: &'a WorkspacePool,
     /// Tells when to stop.
     pub control: &'a RenderControl,
 }
 
 /// What a band works with.
-struct Desk<L: SimdFloat> {
+struct BandScratch<L: SimdFloat> {
     work: Workspace<L>,
     sampler: Sampler<L>,
     colors: TileColors<L::Real>,
@@ -60,7 +60,7 @@ struct Desk<L: SimdFloat> {
     in_tile: Candidates,
 }
 
-impl<L: SimdFloat> Desk<L> {
+impl<L: SimdFloat> BandScratch<L> {
     fn new(in_squares: bool) -> Self {
         Self {
             work: Workspace::default(),
@@ -97,15 +97,15 @@ impl<R: SimdReal> Band<'_, R> {
             return Some(Rays::default());
         }
         let (plan, stop) = (self.plan, &self.control.stop);
-        let left = self.shelf.take::<Desk<L>>();
-        let mut desk = left.unwrap_or_else(|| Box::new(Desk::new(self.in_squares)));
-        let Desk {
+        let left = self.workspace_pool.take::<BandScratch<L>>();
+        let mut scratch = left.unwrap_or_else(|| Box::new(BandScratch::new(self.in_squares)));
+        let BandScratch {
             work,
             sampler,
             colors,
             in_band,
             in_tile,
-        } = &mut *desk;
+        } = &mut *scratch;
         let ways = (stop, self.reference);
         let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, ways);
         in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
@@ -137,17 +137,17 @@ impl<R: SimdReal> Band<'_, R> {
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
-                    let Hearing { told, those } = self.hearing;
+                    let BandMessages { messages, those } = self.messages;
                     if let Some(those) = those {
-                        let looked = (limits, told, those);
-                        sampler.told(&mut engine, in_tile, &tile, looked, colors);
+                        let looked = (limits, messages, those);
+                        sampler.notified_pixels(&mut engine, in_tile, &tile, looked, colors);
                         if engine.is_stopped() {
                             return None;
                         }
-                        self.write(&tile, sampler.were_told(), colors);
+                        self.write(&tile, sampler.notified(), colors);
                         continue;
                     }
-                    let looked = (limits, told);
+                    let looked = (limits, messages);
                     sampler.adaptive(&mut engine, in_tile, &tile, looked, colors);
                     (colors.stride, colors.channels())
                 }
@@ -169,7 +169,7 @@ impl<R: SimdReal> Band<'_, R> {
             }
         }
         let rays = engine.rays;
-        self.shelf.put(desk);
+        self.workspace_pool.put(scratch);
         Some(rays)
     }
 

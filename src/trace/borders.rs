@@ -3,9 +3,9 @@
 use std::sync::atomic::Ordering;
 
 use super::cell::Cell;
+use super::messages::{ABOVE, ALL, BELOW, EdgeMessages, LEFT, RIGHT};
 use super::thresholds::FINEST;
 use super::tile::Tile;
-use super::told::{ABOVE, ALL, BELOW, LEFT, RIGHT, Told};
 
 /// What the pixels of a tile, and those around it, know of their sides.
 #[derive(Debug)]
@@ -45,7 +45,7 @@ impl Borders {
     }
 
     /// Starts with what the pixels of a tile know. Those around it may know more than is known here.
-    pub fn start(&mut self, tile: &Tile, told: &Told) {
+    pub fn start(&mut self, tile: &Tile, messages: &EdgeMessages) {
         let (width, height) = (tile.width(), tile.rows.len());
         self.stride = width + 2;
         self.first = [tile.rows.start, tile.columns.start];
@@ -53,10 +53,10 @@ impl Borders {
         self.known.resize(self.stride * (height + 2), 0);
         // Nobody is beyond the edges.
         let before = tile.rows.start.checked_sub(1);
-        if !before.is_some_and(|row| told.has(row)) {
+        if !before.is_some_and(|row| messages.has(row)) {
             self.known[..self.stride].fill(ALL);
         }
-        if !told.has(tile.rows.end) {
+        if !messages.has(tile.rows.end) {
             self.known[self.stride * (height + 1)..].fill(ALL);
         }
         let rows = self.known.chunks_exact_mut(self.stride).skip(1);
@@ -64,24 +64,24 @@ impl Borders {
             if tile.columns.start == 0 {
                 known[0] = ALL;
             }
-            if tile.columns.end == told.width() {
+            if tile.columns.end == messages.width() {
                 known[width + 1] = ALL;
             }
-            let told = told.row(row, &tile.columns);
-            for (known, told) in known[1..=width].iter_mut().zip(told) {
-                *known = told.load(Ordering::Relaxed);
+            let messages = messages.row(row, &tile.columns);
+            for (known, messages) in known[1..=width].iter_mut().zip(messages) {
+                *known = messages.load(Ordering::Relaxed);
             }
         }
     }
 
     /// Hands on what the pixels of the tile know.
-    pub fn finish(&self, tile: &Tile, told: &Told) {
+    pub fn finish(&self, tile: &Tile, messages: &EdgeMessages) {
         let rows = self.known.chunks_exact(self.stride).skip(1);
         for (row, known) in tile.rows.clone().zip(rows) {
-            let told = told.row(row, &tile.columns);
-            for (&known, told) in known[1..].iter().zip(told) {
+            let messages = messages.row(row, &tile.columns);
+            for (&known, messages) in known[1..].iter().zip(messages) {
                 if known != 0 {
-                    told.store(known, Ordering::Relaxed);
+                    messages.store(known, Ordering::Relaxed);
                 }
             }
         }
@@ -91,8 +91,8 @@ impl Borders {
     #[inline(always)]
     pub fn note(&mut self, cell: &Cell, sides: u8) {
         if usize::from(cell.side) == FINEST {
-            let place = self.place([cell.x, cell.y]);
-            self.known[place] |= sides;
+            let index = self.place([cell.x, cell.y]);
+            self.known[index] |= sides;
         }
     }
 
@@ -111,7 +111,7 @@ impl Borders {
             (behind - self.stride, BELOW, ABOVE)
         };
         let listens =
-            |place: usize, side: u8| (self.known[place] & side == 0).then_some((place, side));
+            |index: usize, side: u8| (self.known[index] & side == 0).then_some((index, side));
         let listening = [listens(before, end), listens(behind, start)];
         if listening == [None; 2] {
             return None;
@@ -129,9 +129,9 @@ impl Borders {
     }
 
     /// The pixel at a place; `None` before the first ones of the picture.
-    pub fn listener(&self, place: usize) -> Option<Listener> {
-        let pixel = self.pixel(place)?;
-        Some(if self.is_inside(place) {
+    pub fn listener(&self, index: usize) -> Option<Listener> {
+        let pixel = self.pixel(index)?;
+        Some(if self.is_inside(index) {
             Listener::Here(self.cell_of(pixel))
         } else {
             Listener::Elsewhere(pixel)
@@ -175,10 +175,10 @@ mod tests {
             columns: 4..7,
             rows: 0..2,
         };
-        let told = Told::new(7, 0..4);
-        told.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
+        let messages = EdgeMessages::new(7, 0..4);
+        messages.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
         let mut borders = Borders::new();
-        borders.start(&tile, &told);
+        borders.start(&tile, &messages);
         let listening = |borders: &Borders, point: [u16; 2]| {
             let side = borders.side_of(point)?;
             let pixels = side.listening.into_iter().flatten();
@@ -212,8 +212,8 @@ mod tests {
         assert_eq!(listening(&borders, [1, 0]), Some(vec![([0, 4], ABOVE)]));
         assert_eq!(listening(&borders, [step, step]), None, "a corner");
         assert_eq!(listening(&borders, [1, 1]), None, "inside");
-        borders.finish(&tile, &told);
-        let known = told.row(1, &(3..6)).iter();
+        borders.finish(&tile, &messages);
+        let known = messages.row(1, &(3..6)).iter();
         let known: Vec<u8> = known.map(|sides| sides.load(Ordering::Relaxed)).collect();
         assert_eq!(known, [0, ALL, LEFT | ABOVE]);
     }

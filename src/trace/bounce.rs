@@ -3,11 +3,11 @@
 use super::candidates::Candidates;
 use super::cull::LightCandidates;
 use super::doubt::Uncertainty;
+use super::entry_points::EntryPoints;
+use super::mixed_materials::MixedMaterials;
 use super::order::Order;
 use super::outcome::{clamped, joined, signatures_of, store};
 use super::packet::{EdgeInfo, Packet, ReflectionParent, list_doubtful};
-use super::parts::Parts;
-use super::roots::Roots;
 use super::samples::{Edges, Traced};
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Mask as _, SimdFloat, Vec3};
@@ -27,7 +27,7 @@ pub struct Bounce<L: SimdFloat> {
     /// What the rays can meet.
     pub seen: Candidates,
     /// Where to start in the trees.
-    pub roots: Roots,
+    pub entry_points: EntryPoints,
     /// Those of them that may slip between samples.
     pub thin: Candidates,
     /// What can cast shadows where they meet something, light by light.
@@ -37,7 +37,7 @@ pub struct Bounce<L: SimdFloat> {
     /// Which of the samples the rays are, if they were put in another order.
     pub order: Order<L::Real>,
     /// Memory for the materials of a packet.
-    pub parts: Parts<L>,
+    pub mixed: MixedMaterials<L>,
 }
 
 impl<L: SimdFloat> Bounce<L> {
@@ -52,7 +52,7 @@ impl<L: SimdFloat> Bounce<L> {
             };
             LightCandidates {
                 casters,
-                roots: Roots::default(),
+                entry_points: EntryPoints::default(),
                 thin,
                 is_umbra: false,
             }
@@ -64,12 +64,12 @@ impl<L: SimdFloat> Bounce<L> {
             edges: Vec::new(),
             uncertainties: Vec::new(),
             seen: Candidates::default(),
-            roots: Roots::default(),
+            entry_points: EntryPoints::default(),
             thin: Candidates::default(),
             lights: plan.lights.iter().map(candidates_of).collect(),
             signatures: Vec::new(),
             order: Order::default(),
-            parts: Parts::new(),
+            mixed: MixedMaterials::new(),
         }
     }
 

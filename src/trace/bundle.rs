@@ -1,6 +1,6 @@
 //! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
 
-use super::beside::Beside;
+use super::thin_margin::ThinMargin;
 use crate::plan::{GROUP, Node};
 use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, inverse, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
@@ -125,10 +125,10 @@ impl<L: SimdFloat> Bundle<L> {
         &self.shaft
     }
 
-    /// Which of the rays meet the box at `place` of a node, or pass within `beside` of its sides, before
+    /// Which of the rays meet the box at `index` of a node, or pass within `margin` of its sides, before
     /// their own `reach`: slabs, as Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
     #[inline(always)]
-    pub fn each_meets(&self, node: &Node, place: usize, reach: L, beside: L::Real) -> L::Mask {
+    pub fn each_meets(&self, node: &Node, index: usize, reach: L, margin: L::Real) -> L::Mask {
         let mut near = reach.like(L::Real::ZERO);
         let mut far = reach;
         let [below, above] = &self.origins;
@@ -138,9 +138,9 @@ impl<L: SimdFloat> Bundle<L> {
             (below.z, above.z, self.inverse.z),
         ];
         for (axis, (below, above, inverse)) in origins.into_iter().enumerate() {
-            let low = L::Real::from_single(node.planes[0][axis][place]);
-            let high = L::Real::from_single(node.planes[1][axis][place]);
-            let (low, high) = (reach.like(low - beside), reach.like(high + beside));
+            let low = L::Real::from_single(node.planes[0][axis][index]);
+            let high = L::Real::from_single(node.planes[1][axis][index]);
+            let (low, high) = (reach.like(low - margin), reach.like(high + margin));
             // The origin is moved away from either plane, so that the box grows.
             let (low, high) = ((low - above) * inverse, (high - below) * inverse);
             near = near.max(low.min(high));
@@ -250,21 +250,21 @@ impl<R: Real> Shaft<R> {
         token: L::Token,
         node: &Node,
         reach: R,
-        beside: &Beside<R>,
+        margin: &ThinMargin<R>,
         widths: &mut [R; GROUP],
     ) -> u64 {
         let mut bits = 0;
         for first in (0..node.count).step_by(L::WIDTH) {
-            let mut width = self.distance::<L>(token, node, first) * L::splat(token, beside.spread)
-                + L::splat(token, beside.width);
-            if R::ZERO < beside.narrowing {
-                width = beside.narrowed(width, self.gap::<L>(token, node, first));
+            let mut width = self.distance::<L>(token, node, first) * L::splat(token, margin.spread)
+                + L::splat(token, margin.width);
+            if R::ZERO < margin.narrowing {
+                width = margin.narrowed(width, self.gap::<L>(token, node, first));
             }
             width.store(&mut widths[first..]);
             let thickness = L::load_singles(token, &node.thickness[first..]);
-            let is_thin = thickness.less(width * L::splat(token, beside.thickest));
+            let is_thin = thickness.less(width * L::splat(token, margin.thickest));
             if is_thin.any() {
-                let reach = beside.end(L::splat(token, reach), width);
+                let reach = margin.end(L::splat(token, reach), width);
                 let (_, is_met) = self.slabs(node, first, reach, Some(width));
                 bits |= (is_thin & is_met).bits() << first;
             }
@@ -303,14 +303,14 @@ impl<R: Real> Shaft<R> {
     }
 
     /// The boxes of a node from `from` on as slabs between planes: where the first of the rays may enter
-    /// each, and whether any may meet it before `reach` and within `beside` of it.
+    /// each, and whether any may meet it before `reach` and within `margin` of it.
     #[inline(always)]
     fn slabs<L: SimdFloat<Real = R>>(
         &self,
         node: &Node,
         from: usize,
         reach: L,
-        beside: Option<L>,
+        margin: Option<L>,
     ) -> (L, L::Mask) {
         let token = reach.token();
         let mut near = L::splat(token, R::ZERO);
@@ -321,8 +321,8 @@ impl<R: Real> Shaft<R> {
             let leave = L::load_singles(token, &node.planes[1 - first][axis][from..]);
             let mut enter = enter - L::splat(token, common.origins[0]);
             let mut leave = leave - L::splat(token, common.origins[1]);
-            if let Some(beside) = beside {
-                let outwards = if first == 0 { beside } else { -beside };
+            if let Some(margin) = margin {
+                let outwards = if first == 0 { margin } else { -margin };
                 enter = enter - outwards;
                 leave = leave + outwards;
             }

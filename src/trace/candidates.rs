@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::roots::Roots;
-use crate::plan::{IdleFaces, Plan, PointLight};
+use super::entry_points::EntryPoints;
+use crate::plan::{CulledFaces, Plan, PointLight};
 use crate::primitive::{Extent, KINDS, Kind, Primitive, Rectangle, Visit};
 use crate::simd::{Real, Vec3};
 
@@ -19,15 +19,15 @@ pub struct Candidates {
 
 /// What rays are tested against: lists, and trees from these nodes on.
 #[derive(Clone, Copy, Debug)]
-pub struct Among<'a, R> {
+pub struct Targets<'a, R> {
     /// The lists, and whether there is anything in the trees.
     pub candidates: &'a Candidates,
     /// Where to start in the trees.
-    pub roots: &'a Roots,
+    pub entry_points: &'a EntryPoints,
     /// The light that the rays go to, if they do.
     pub light: Option<&'a PointLight<R>>,
     /// For each mesh, the faces that are not tested, if there are any.
-    pub idle: &'a [Option<Arc<IdleFaces>>],
+    pub culled_faces: &'a [Option<Arc<CulledFaces>>],
 }
 
 /// Direction of a range of pixels.

@@ -51,9 +51,9 @@ impl<R: Real> CurvedColumns<R> {
     /// Puts a face into a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, triangle: &PackedTriangle<R>, smooth: &CornerNormals<R>) {
-        for place in 0..3 {
-            self.corners[place].set(lane, triangle.corners[place]);
-            self.normals[place].set(lane, smooth.normals[place]);
+        for index in 0..3 {
+            self.corners[index].set(lane, triangle.corners[index]);
+            self.normals[index].set(lane, smooth.normals[index]);
         }
         self.curvature[lane] = smooth.curvature;
     }

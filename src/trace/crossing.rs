@@ -2,7 +2,7 @@
 
 use super::cell::Cell;
 use super::lattice::{Lattice, Sample};
-use super::told::{ABOVE, BELOW, LEFT, RIGHT};
+use super::messages::{ABOVE, BELOW, LEFT, RIGHT};
 use crate::simd::Real;
 
 /// What is seen on one side of an edge.

@@ -4,12 +4,12 @@
 use glam::DVec3;
 
 use super::beam::Beam;
-use super::beside::Beside;
 use super::bundle::Shaft;
 use super::candidates::{Candidates, Omit};
+use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
-use super::roots::Roots;
-use super::slip::may_slip;
+use super::thin_cull::may_slip;
+use super::thin_margin::ThinMargin;
 use super::thresholds::SLIPPING;
 use super::tile::Tile;
 use super::walk::Stack;
@@ -40,7 +40,7 @@ pub struct LightCandidates {
     /// What may block the light for some of them.
     pub casters: Candidates,
     /// Where to start in the trees.
-    pub roots: Roots,
+    pub entry_points: EntryPoints,
     /// Those of them whose shadows may slip between samples.
     pub thin: Candidates,
     /// Whether one primitive blocks it for all of them.
@@ -117,11 +117,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let plan = self.plan;
         let LightCandidates {
             casters,
-            roots,
+            entry_points,
             thin,
             is_umbra,
         } = between;
-        roots.forget();
+        entry_points.forget();
         let from = light.position.to_dvec3();
         let beside = footprint.unwrap_or(L::Real::ZERO);
         let beam = Beam::to_ball(from, ball);
@@ -192,9 +192,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             Shaft::of(&starts, &ways)
         };
         let end = L::Real::ONE + caution;
-        between.casters.has_geometry = between.roots.narrow::<L>(self.token, geometry, &shaft, end);
+        between.casters.has_geometry = between
+            .entry_points
+            .narrow::<L>(self.token, geometry, &shaft, end);
         if let Some(width) = footprint.filter(|_| between.thin.has_geometry) {
-            let beside = Beside::slipping(width, L::Real::ZERO);
+            let beside = ThinMargin::slipping(width, L::Real::ZERO);
             between.thin.has_geometry = may_slip::<L>(self.token, geometry, &shaft, &beside);
         }
     }

@@ -138,8 +138,8 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             return;
         }
         again.samples.clear();
-        for &place in &again.places {
-            let (x, y) = (samples.x[place as usize], samples.y[place as usize]);
+        for &index in &again.places {
+            let (x, y) = (samples.x[index as usize], samples.y[index as usize]);
             again.samples.push(x.to_f64(), y.to_f64());
         }
         reference.trace(&mut again.samples, edges, self.stop, &mut again.traced);
@@ -173,7 +173,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         self.grow(0);
         self.work.bounces[0].start(kernel, samples, seen, edges);
 
-        // Forth: each bounce sends the next one on its way.
+        // Forward: each bounce sends the next one on its way.
         let mut depth = 0;
         loop {
             self.grow(depth + 1);

@@ -2,7 +2,7 @@
 //! them, which no sample has seen; and where one is on a face that looks away from a light, and the other in shadow on
 //! one that does not, there may be light between them.
 
-use super::gather::Piece;
+use super::gather::HitPrimitive;
 use super::packet::Packet;
 use super::paths::NOTHING;
 use super::samples::Traced;
@@ -67,7 +67,9 @@ type Face<'a, R> = (&'a PackedTriangle<R>, Vec3<R>);
 /// The flat face of this number, if it is one.
 fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
     match plan.numbered_geometry() {
-        Some((geometry, first)) if first <= number => Piece::of(geometry, number - first)?.flat(),
+        Some((geometry, first)) if first <= number => {
+            HitPrimitive::of(geometry, number - first)?.flat()
+        }
         _ => {
             let first = plan.primitives.firsts()[Kind::Triangle as usize];
             let triangle = plan.primitives.triangles.get(number.checked_sub(first)?)?;

@@ -1,9 +1,9 @@
 //! Which shadows hits are in that end near them: between two of those there may be light, or none.
 
-use super::candidates::Among;
-use super::coat::Coat;
+use super::candidates::Targets;
 use super::cull::LightCandidates;
 use super::footprint::Footprint;
+use super::hit_material::HitMaterial;
 use super::intersect::Kernel;
 use super::paths::Paths;
 use super::scan::{Test, scan_lists};
@@ -30,7 +30,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         1 < shadows
     }
 
-    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this coat are; `lit` tells which
+    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this material are; `lit` tells which
     /// lights shine there. Tiles leave out different casters, and the marks are the same in all of them.
     ///
     /// Apart: few packets need it, and the others are quicker without.
@@ -39,7 +39,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         lights: &[LightCandidates],
         (hit, footprint): (&Hit<L>, &Footprint<L>),
-        (coat, view): (Coat<L>, Vec3<L>),
+        (material, view): (HitMaterial<L>, Vec3<L>),
         lit: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -65,16 +65,16 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let cosine = normal.dot(direction);
                     let from = (cosine, normal, direction - view);
                     let facing = self.splat(0.0).less(cosine);
-                    let dark = unlit & facing & coat.shows(self.plan, light, from);
+                    let dark = unlit & facing & material.shows(self.plan, light, from);
                     if !dark.any() {
                         continue;
                     }
                     let (paths, distance) = self.towards(hit, light, (direction, distance));
-                    let among = Among {
+                    let targets = Targets {
                         candidates: &candidates.casters,
-                        roots: &candidates.roots,
+                        entry_points: &candidates.entry_points,
                         light: None,
-                        idle: &light.idle_faces,
+                        culled_faces: &light.culled_faces,
                     };
                     let test = DepthTest {
                         methods: &self.plan.methods,
@@ -84,7 +84,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         deepest: self.splat(0.0),
                         caster: self.splat(0.0),
                     };
-                    let caster = self.deepest(among, &paths, test, stack);
+                    let caster = self.deepest(targets, &paths, test, stack);
                     shadows = shadows + caster * self.splat(weight);
                 }
                 shadows
@@ -107,17 +107,17 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     fn deepest(
         self,
-        among: Among<L::Real>,
+        targets: Targets<L::Real>,
         paths: &Paths<L>,
         mut test: DepthTest<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
-        scan_lists(self.plan, among.candidates, paths, &mut test);
+        scan_lists(self.plan, targets.candidates, paths, &mut test);
         let exact = Blur::splat(self.token, Blur::NONE);
         if test.free.any()
-            && let Some(thicket) = self.thicket(among, (test.free, exact))
+            && let Some(tree_scan) = self.tree_scan(targets, (test.free, exact))
         {
-            thicket.scan(paths, stack, &mut test);
+            tree_scan.scan(paths, stack, &mut test);
         }
         L::select(test.free, test.caster, self.splat(0.0))
     }

@@ -2,7 +2,7 @@
 //! packet.
 
 use super::columns::{Columns, CurvedColumns};
-use super::parts::Parts;
+use super::mixed_materials::MixedMaterials;
 use crate::plan::{Geometry, MeshInstance};
 use crate::primitive::{
     CornerNormals, Flat, PackedSphere, PackedTriangle, Ray, Round, SurfacePoint,
@@ -10,7 +10,7 @@ use crate::primitive::{
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// A primitive in a tree, and what it must have in common with others to be lit with them.
-pub struct Piece<'a, R> {
+pub struct HitPrimitive<'a, R> {
     form: Form<'a, R>,
     /// Index into [`crate::plan::Plan::materials`].
     pub material: u32,
@@ -24,7 +24,7 @@ enum Form<'a, R> {
     Round(&'a PackedSphere<R>),
 }
 
-impl<'a, R: Real> Piece<'a, R> {
+impl<'a, R: Real> HitPrimitive<'a, R> {
     /// The primitive of a number, counted from the geometry's first; `None` for a kind that is shaded by
     /// itself.
     #[inline(always)]
@@ -86,7 +86,7 @@ impl<'a, R: Real> Piece<'a, R> {
     }
 }
 
-/// What is needed of pieces where they are hit, lane by lane.
+/// What is needed of primitives where they are hit, lane by lane.
 pub struct Gathered<R> {
     /// A corner, or the middle.
     place: Columns<R>,
@@ -100,11 +100,11 @@ pub struct Gathered<R> {
 }
 
 impl<R: Real> Gathered<R> {
-    /// Nothing in any lane, and room for what is like a piece.
+    /// Nothing in any lane, and room for what is like a primitive.
     #[inline(always)]
-    pub fn like(piece: &Piece<R>) -> Self {
+    pub fn like(hit_primitive: &HitPrimitive<R>) -> Self {
         let zeros = [R::ZERO; MAX_LANES];
-        let curved = match piece.form {
+        let curved = match hit_primitive.form {
             Form::Curved(..) => Some(CurvedColumns::new()),
             Form::Flat(_) | Form::Round(_) => None,
         };
@@ -117,11 +117,11 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// Puts a piece into a lane.
+    /// Puts a primitive into a lane.
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, piece: &Piece<R>) {
-        self.materials[lane] = R::from_f64(f64::from(piece.material) + 1.0);
-        match piece.form {
+    pub fn set(&mut self, lane: usize, hit_primitive: &HitPrimitive<R>) {
+        self.materials[lane] = R::from_f64(f64::from(hit_primitive.material) + 1.0);
+        match hit_primitive.form {
             Form::Flat(triangle) => self.set_flat(lane, triangle),
             Form::Curved(triangle, normals) => {
                 self.set_flat(lane, triangle);
@@ -151,25 +151,25 @@ impl<R: Real> Gathered<R> {
         L::splat(token, R::ZERO).less(L::load(token, &self.materials))
     }
 
-    /// `parts` become the materials.
+    /// `mixed` become the materials.
     #[inline(always)]
-    pub fn part<L: SimdFloat<Real = R>>(&self, token: L::Token, parts: &mut Parts<L>) {
-        parts.clear();
+    pub fn part<L: SimdFloat<Real = R>>(&self, token: L::Token, mixed: &mut MixedMaterials<L>) {
+        mixed.clear();
         let materials = L::load(token, &self.materials);
         let mut left = self.mask::<L>(token).bits();
         while left != 0 {
             let material = self.materials[left.trailing_zeros() as usize];
             let here = materials.same(materials.like(material));
             left &= !here.bits();
-            parts.add(here, (material - R::ONE).to_f64() as u32);
+            mixed.add(here, (material - R::ONE).to_f64() as u32);
         }
     }
 
-    /// The hits at `t` on pieces that are like `piece`.
+    /// The hits at `t` on primitives that are like one.
     #[inline(always)]
     pub fn refine<L: SimdFloat<Real = R>>(
         &self,
-        piece: &Piece<R>,
+        hit_primitive: &HitPrimitive<R>,
         rays: &Ray<L>,
         t: L,
     ) -> SurfacePoint<L> {
@@ -177,7 +177,7 @@ impl<R: Real> Gathered<R> {
         let place = self.place.load::<L>(token);
         let [first, second] = &self.measures;
         let (first, second) = (L::load(token, first), L::load(token, second));
-        match (&piece.form, piece.mesh) {
+        match (&hit_primitive.form, hit_primitive.mesh) {
             (Form::Round(_), _) => {
                 let round = Round {
                     center: place,

@@ -1,10 +1,10 @@
 //! The nearest hit among some primitives, and whether anything stands in a ray's way.
 
-use super::beside::Beside;
-use super::candidates::Among;
+use super::candidates::Targets;
 use super::doubt::Doubt;
 use super::paths::{NOTHING, Paths, real};
-use super::scan::{Test, Thicket, scan_lists};
+use super::scan::{Test, TreeScan, scan_lists};
+use super::thin_margin::ThinMargin;
 use super::walk::Stack;
 use crate::plan::{Geometry, Plan, RayOrigin};
 use crate::primitive::{Blur, FAR_CAUTION, Primitive};
@@ -55,27 +55,27 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
 
     /// What stands in the plan's tree, if it is among these.
     #[inline(always)]
-    pub fn thicket<'b>(
+    pub fn tree_scan<'b>(
         self,
-        among: Among<'b, L::Real>,
+        targets: Targets<'b, L::Real>,
         (active, blur): (L::Mask, Blur<L>),
-    ) -> Option<Thicket<'b, L>>
+    ) -> Option<TreeScan<'b, L>>
     where
         'a: 'b,
     {
         let (geometry, first) = self.geometry()?;
-        among.candidates.has_geometry.then_some(Thicket {
+        targets.candidates.has_geometry.then_some(TreeScan {
             geometry,
             first,
-            roots: among.roots,
-            idle: among.idle,
+            entry_points: targets.entry_points,
+            culled_faces: targets.culled_faces,
             back_from: match self.plan.ray_origin {
-                RayOrigin::AtHit => among.light.and_then(|light| light.apex(geometry)),
+                RayOrigin::AtHit => targets.light.and_then(|light| light.apex(geometry)),
                 _ => None,
             },
             active,
             blur,
-            beside: Beside::default(),
+            margin: ThinMargin::default(),
             is_boxed: self.plan.is_boxed,
         })
     }
@@ -98,7 +98,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn nearest(
         self,
-        among: Among<L::Real>,
+        targets: Targets<L::Real>,
         (paths, blur): (&Paths<L>, Blur<L>),
         active: L::Mask,
         stack: &mut Stack<L::Real>,
@@ -116,11 +116,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             active,
             doubt: &mut doubt,
         };
-        scan_lists(self.plan, among.candidates, paths, &mut test);
-        if let Some(thicket) = self.thicket(among, (active, blur)) {
+        scan_lists(self.plan, targets.candidates, paths, &mut test);
+        if let Some(tree_scan) = self.tree_scan(targets, (active, blur)) {
             // What is lent to a function of its own is in memory for good: those above are in registers.
             let (mut found, mut undecided) = (best, doubt);
-            self.nearest_in(&thicket, paths, (&mut found, &mut undecided), stack);
+            self.nearest_in(&tree_scan, paths, (&mut found, &mut undecided), stack);
             (best, doubt) = (found, undecided);
         }
         let doubt = if doubt.is_asked() {
@@ -129,7 +129,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             active & !active
         };
         if is_tied {
-            best = self.settled(among, (paths, blur), best, stack);
+            best = self.settled(targets, (paths, blur), best, stack);
         }
         (best, doubt)
     }
@@ -140,7 +140,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(never)]
     fn nearest_in(
         self,
-        thicket: &Thicket<L>,
+        tree_scan: &TreeScan<L>,
         paths: &Paths<L>,
         (best, doubt): (&mut Nearest<L>, &mut Doubt<L, TREE>),
         stack: &mut Stack<L::Real>,
@@ -152,10 +152,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 let mut test = NearestTest::<L, TREE, false> {
                     methods: &self.plan.methods,
                     best,
-                    active: thicket.active,
+                    active: tree_scan.active,
                     doubt,
                 };
-                thicket.scan(paths, stack, &mut test);
+                tree_scan.scan(paths, stack, &mut test);
             },
         );
     }
@@ -165,7 +165,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn blocked(
         self,
-        among: Among<L::Real>,
+        targets: Targets<L::Real>,
         (paths, doubt): (&Paths<L>, Doubt<L, TREE>),
         (distance, wanted, thick): (L, L::Mask, Option<L>),
         stack: &mut Stack<L::Real>,
@@ -185,12 +185,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             thick,
             way: &mut way,
         };
-        scan_lists(self.plan, among.candidates, paths, &mut test);
+        scan_lists(self.plan, targets.candidates, paths, &mut test);
         if way.free.any()
-            && let Some(thicket) = self.thicket(among, (way.free, way.doubt.blur))
+            && let Some(tree_scan) = self.tree_scan(targets, (way.free, way.doubt.blur))
         {
             let mut known = way;
-            self.way_in(&thicket, paths, (distance, thick, &mut known), stack);
+            self.way_in(&tree_scan, paths, (distance, thick, &mut known), stack);
             way = known;
         }
         Blocked {
@@ -205,7 +205,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(never)]
     fn way_in(
         self,
-        thicket: &Thicket<L>,
+        tree_scan: &TreeScan<L>,
         paths: &Paths<L>,
         (distance, thick, way): (L, Option<L>, &mut Way<L, TREE>),
         stack: &mut Stack<L::Real>,
@@ -219,14 +219,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     methods: &self.plan.methods,
                     distance,
                     sure: way.doubt.ahead_of(distance),
-                    reach: match thicket.back_from {
+                    reach: match tree_scan.back_from {
                         None => distance,
                         Some(_) => all * way.doubt.stretch(distance),
                     },
                     thick,
                     way,
                 };
-                thicket.scan(paths, stack, &mut test);
+                tree_scan.scan(paths, stack, &mut test);
             },
         );
     }

@@ -18,13 +18,13 @@ mod samples;
 
 mod shadows;
 
-mod beside;
+mod thin_margin;
 
 mod bundle;
 
-mod roots;
+mod entry_points;
 
-mod slip;
+mod thin_cull;
 
 mod candidates;
 
@@ -40,15 +40,15 @@ mod intersect;
 
 mod stretch;
 
-mod settle;
+mod coincident;
 
 mod columns;
 
 mod footprint;
 
-mod parts;
+mod mixed_materials;
 
-mod coat;
+mod hit_material;
 
 mod gather;
 
@@ -76,7 +76,7 @@ mod faces;
 
 mod bounce;
 
-mod forth;
+mod forward;
 
 mod engine;
 
@@ -84,7 +84,7 @@ mod points;
 
 mod cell;
 
-mod told;
+mod messages;
 
 mod borders;
 
@@ -102,9 +102,9 @@ mod heat;
 
 mod threads;
 
-mod shelf;
+mod workspace_pool;
 
-mod again;
+mod retrace;
 
 mod canvas;
 

@@ -75,8 +75,8 @@ impl Points {
         let length = self.slots.len() * 2;
         for slot in std::mem::replace(&mut self.slots, vec![0; length]) {
             if slot != 0 {
-                let place = self.slot(slot >> 32);
-                self.slots[place] = slot;
+                let index = self.slot(slot >> 32);
+                self.slots[index] = slot;
             }
         }
     }

@@ -7,12 +7,12 @@ use glam::DVec3;
 use rayon::current_num_threads;
 use rayon::iter::{IntoParallelIterator as _, ParallelExtend as _, ParallelIterator as _};
 
-use super::candidates::{Among, Candidates};
+use super::candidates::{Candidates, Targets};
 use super::control::RenderControl;
+use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
 use super::paths::{IgnoredPrimitive, Paths};
-use super::roots::Roots;
-use crate::animate::Seen;
+use crate::animate::Landmark;
 use crate::plan::{Plan, Planner, RenderRequest};
 use crate::primitive::{Blur, Ray};
 use crate::scene::{Camera, Framing, List, Object, Scene, Take};
@@ -74,14 +74,14 @@ impl SceneQuery {
             token: (),
             plan: &self.plan,
         };
-        let among = Among {
+        let targets = Targets {
             candidates: &self.all,
-            roots: &Roots::default(),
+            entry_points: &EntryPoints::default(),
             light: None,
-            idle: &[],
+            culled_faces: &[],
         };
         let rays = (&paths, Blur::NONE);
-        let (nearest, _) = kernel.nearest(among, rays, true, &mut Vec::new());
+        let (nearest, _) = kernel.nearest(targets, rays, true, &mut Vec::new());
         nearest.t
     }
 
@@ -104,7 +104,7 @@ const SURVEYED: u32 = 5;
 pub fn survey(
     take: &Take,
     (query, aspect): (&SceneQuery, f64),
-    seen: &mut Vec<Vec<Seen>>,
+    seen: &mut Vec<Vec<Landmark>>,
     control: &RenderControl,
 ) -> bool {
     let sample = |sample: usize| {
@@ -144,7 +144,7 @@ pub fn visible(
 
 impl SceneQuery {
     /// What is seen at a grid of places.
-    fn look(&self, framing: &Framing, aspect: f64) -> Vec<Seen> {
+    fn look(&self, framing: &Framing, aspect: f64) -> Vec<Landmark> {
         let last = f64::from(SURVEYED - 1);
         // Rays that run side by side all see the same place of the sky.
         let is_parallel = framing
@@ -161,7 +161,7 @@ impl SceneQuery {
             } else {
                 origin + direction * distance
             };
-            Seen { at, what, is_sky }
+            Landmark { at, what, is_sky }
         });
         all.filter(|seen| !(seen.is_sky && is_parallel)).collect()
     }

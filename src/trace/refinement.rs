@@ -5,10 +5,10 @@ use super::borders::{Borders, Listener};
 use super::cell::Cell;
 use super::coverage::{CrossedCell, Found};
 use super::lattice::{Inside, Lattice, Limits};
+use super::messages::{ALL, EdgeMessages};
 use super::samples::{Edges, Samples, Traced};
 use super::thresholds::{FINEST, TELLING};
 use super::tile::{Tile, TileColors};
-use super::told::{ALL, Told};
 use crate::simd::Real;
 
 /// Parts of a pixel that is divided twice.
@@ -30,11 +30,11 @@ pub struct Refinement<R> {
     /// What the pixels know of their sides.
     borders: Borders,
     /// Samples of which it was seen what they tell of the pixels beside them.
-    heard: usize,
+    received: usize,
     /// Pixels that were told something and are not divided yet.
-    told: Vec<Cell>,
+    to_divide: Vec<Cell>,
     /// Row and column of all of them in the tile.
-    were_told: Vec<[usize; 2]>,
+    notified: Vec<[usize; 2]>,
     /// How many of the sixteen parts of each pixel of the tile are divided, and of how many of these the corners see the
     /// same, row by row, as far as some are.
     busy: Vec<[u8; 2]>,
@@ -52,9 +52,9 @@ impl<R: Real> Refinement<R> {
             crossed: Vec::new(),
             even: Vec::new(),
             borders: Borders::new(),
-            heard: 0,
-            told: Vec::new(),
-            were_told: Vec::new(),
+            received: 0,
+            to_divide: Vec::new(),
+            notified: Vec::new(),
             busy: Vec::new(),
             crowded: Vec::new(),
         }
@@ -66,7 +66,7 @@ impl<R: Real> Refinement<R> {
         self.cells.clear();
         self.crossed.clear();
         self.even.clear();
-        self.were_told.clear();
+        self.notified.clear();
         self.busy.clear();
         self.crowded.clear();
     }
@@ -77,8 +77,8 @@ impl<R: Real> Refinement<R> {
     }
 
     /// The pixels that were told something since, by row and column in the tile.
-    pub fn were_told(&self) -> &[[usize; 2]] {
-        &self.were_told
+    pub fn notified(&self) -> &[[usize; 2]] {
+        &self.notified
     }
 
     /// Adds a pixel of a tile, and whether it may show a face of a mesh that no corner is on.
@@ -93,7 +93,7 @@ impl<R: Real> Refinement<R> {
     pub fn start(
         &mut self,
         tile: &Tile,
-        (corners, told): (&Traced<R>, &Told),
+        (corners, messages): (&Traced<R>, &EdgeMessages),
         limits: Limits<R>,
         colors: &mut TileColors<R>,
     ) -> bool {
@@ -102,8 +102,8 @@ impl<R: Real> Refinement<R> {
         }
         self.lattice.clear();
         self.lattice.add(tile, corners, &mut self.split);
-        self.borders.start(tile, told);
-        self.heard = 0;
+        self.borders.start(tile, messages);
+        self.received = 0;
         self.cells.append(&mut self.split);
         for pixel in &self.cells {
             colors.blacken(pixel.pixel_in(colors.stride));
@@ -113,23 +113,23 @@ impl<R: Real> Refinement<R> {
     }
 
     /// Starts with pixels of a tile, by row and column in the picture, that were told something.
-    pub fn start_told(
+    pub fn start_notified(
         &mut self,
         tile: &Tile,
-        (corners, told): (&Traced<R>, &Told),
+        (corners, messages): (&Traced<R>, &EdgeMessages),
         pixels: &[[usize; 2]],
         colors: &mut TileColors<R>,
     ) {
         self.clear();
         self.lattice.clear();
-        self.borders.start(tile, told);
-        self.heard = 0;
+        self.borders.start(tile, messages);
+        self.received = 0;
         for pixel in pixels {
             let pixel = self.borders.cell_of(*pixel);
             self.borders.note(&pixel, ALL);
-            self.told.push(pixel);
+            self.to_divide.push(pixel);
         }
-        self.divide_told(tile, corners, colors);
+        self.divide_notified(tile, corners, colors);
     }
 
     /// Divides the pixels that something thin is near; of the others, nothing thin is to be found at their quarters.
@@ -254,44 +254,44 @@ impl<R: Real> Refinement<R> {
     pub fn listen(
         &mut self,
         tile: &Tile,
-        (corners, told): (&Traced<R>, &Told),
+        (corners, messages): (&Traced<R>, &EdgeMessages),
         colors: &mut TileColors<R>,
     ) -> bool {
-        for heard in self.heard..self.lattice.len() {
-            let Some(side) = self.borders.side_of(self.lattice.point(heard)) else {
+        for received in self.received..self.lattice.len() {
+            let Some(side) = self.borders.side_of(self.lattice.point(received)) else {
                 continue;
             };
-            if R::from_f64(TELLING) < self.lattice.excess(heard, side.ends) {
+            if R::from_f64(TELLING) < self.lattice.excess(received, side.ends) {
                 for (place, side) in side.listening.into_iter().flatten() {
                     match self.borders.listener(place) {
                         Some(Listener::Here(pixel)) => {
                             self.borders.note(&pixel, ALL);
-                            self.told.push(pixel);
+                            self.to_divide.push(pixel);
                         }
-                        Some(Listener::Elsewhere(pixel)) => told.tell(pixel, side),
+                        Some(Listener::Elsewhere(pixel)) => messages.send(pixel, side),
                         None => {}
                     }
                 }
             }
         }
-        self.heard = self.lattice.len();
-        self.divide_told(tile, corners, colors);
+        self.received = self.lattice.len();
+        self.divide_notified(tile, corners, colors);
         let is_done = self.cells.is_empty();
         if is_done {
-            self.borders.finish(tile, told);
+            self.borders.finish(tile, messages);
         }
         !is_done
     }
 
     /// Divides the pixels that were told something, twice: an end of something may be in one quarter alone.
-    fn divide_told(&mut self, tile: &Tile, corners: &Traced<R>, colors: &mut TileColors<R>) {
-        self.lattice.add(tile, corners, &mut self.told);
-        for pixel in self.told.drain(..) {
+    fn divide_notified(&mut self, tile: &Tile, corners: &Traced<R>, colors: &mut TileColors<R>) {
+        self.lattice.add(tile, corners, &mut self.to_divide);
+        for pixel in self.to_divide.drain(..) {
             colors.blacken(pixel.pixel_in(colors.stride));
             if let Some(busy) = self.busy.get_mut(pixel.pixel_in(colors.stride)) {
                 *busy = [0; 2];
             }
-            self.were_told.push(pixel.row_and_column());
+            self.notified.push(pixel.row_and_column());
             let first = self.split.len();
             self.lattice.subdivide(&pixel, &mut self.split);
             for quarter in self.split.drain(first..) {

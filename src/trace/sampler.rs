@@ -6,12 +6,12 @@ use super::candidates::Candidates;
 use super::engine::Engine;
 use super::faces::may_hide_face;
 use super::lattice::{Limits, range};
+use super::messages::EdgeMessages;
 use super::refinement::Refinement;
 use super::samples::{Edges, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
-use super::told::Told;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Pixels with too much in them that are traced at once.
@@ -155,12 +155,12 @@ impl<L: SimdFloat> Sampler<L> {
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
-        (limits, told): (Limits<L::Real>, &Told),
+        (limits, messages): (Limits<L::Real>, &EdgeMessages),
         colors: &mut TileColors<L::Real>,
     ) {
         self.trace_corners(engine, seen, tile);
         self.judge(engine.token(), tile, limits, colors);
-        let corners = (&self.corners, told);
+        let corners = (&self.corners, messages);
         if !self.refinement.start(tile, corners, limits, colors) {
             return;
         }
@@ -171,29 +171,30 @@ impl<L: SimdFloat> Sampler<L> {
         self.look(engine, seen, tile, Edges::Near);
         self.refinement.divide();
         self.look(engine, seen, tile, Edges::Bordered);
-        self.refine(engine, seen, tile, (limits, told), colors);
+        self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
     /// The means of pixels that were told something, by row and column in the picture, and of those that they tell.
-    pub fn told<const TREE: bool>(
+    pub fn notified_pixels<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
-        (limits, told, pixels): (Limits<L::Real>, &Told, &[[usize; 2]]),
+        (limits, messages, pixels): (Limits<L::Real>, &EdgeMessages, &[[usize; 2]]),
         colors: &mut TileColors<L::Real>,
     ) {
         self.trace_corners(engine, seen, tile);
         let stride = tile.width() + 1;
         colors.resize(stride, stride * tile.rows.len());
-        let corners = (&self.corners, told);
-        self.refinement.start_told(tile, corners, pixels, colors);
-        self.refine(engine, seen, tile, (limits, told), colors);
+        let corners = (&self.corners, messages);
+        self.refinement
+            .start_notified(tile, corners, pixels, colors);
+        self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
     /// The pixels of the last tile that were told something, by row and column in it.
-    pub fn were_told(&self) -> &[[usize; 2]] {
-        self.refinement.were_told()
+    pub fn notified(&self) -> &[[usize; 2]] {
+        self.refinement.notified()
     }
 
     /// Traces a sample at each corner of the pixels of a tile.
@@ -217,7 +218,7 @@ impl<L: SimdFloat> Sampler<L> {
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
-        (limits, told): (Limits<L::Real>, &Told),
+        (limits, messages): (Limits<L::Real>, &EdgeMessages),
         colors: &mut TileColors<L::Real>,
     ) {
         loop {
@@ -225,7 +226,7 @@ impl<L: SimdFloat> Sampler<L> {
                 self.look(engine, seen, tile, Edges::Signed);
                 self.refinement.settle(limits, colors);
             }
-            let corners = (&self.corners, told);
+            let corners = (&self.corners, messages);
             if engine.is_stopped() {
                 return;
             }

@@ -65,8 +65,8 @@ const SQUARE: usize = 4;
 #[inline(always)]
 fn sort<T: Copy + Default>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
     to.resize(from.len(), T::default());
-    for (&number, &place) in from.iter().zip(order) {
-        to[place as usize] = number;
+    for (&number, &index) in from.iter().zip(order) {
+        to[index as usize] = number;
     }
 }
 
@@ -175,19 +175,19 @@ impl<R: Real> Traced<R> {
         ];
         let noted = if edges == Edges::Ignored { 3 } else { 4 };
         for (to, from) in columns.into_iter().take(noted) {
-            for (&place, &number) in places.iter().zip(from) {
-                to[place as usize] = R::from_f64(number);
+            for (&index, &number) in places.iter().zip(from) {
+                to[index as usize] = R::from_f64(number);
             }
         }
         if edges != Edges::Ignored {
-            for (&place, &signature) in places.iter().zip(&seen.signature) {
-                self.signature[place as usize] = signature;
+            for (&index, &signature) in places.iter().zip(&seen.signature) {
+                self.signature[index as usize] = signature;
             }
-            for (&place, &shadows) in places.iter().zip(&seen.shadows) {
-                self.shadows[place as usize] = shadows;
+            for (&index, &shadows) in places.iter().zip(&seen.shadows) {
+                self.shadows[index as usize] = shadows;
             }
-            for (&place, &face) in places.iter().zip(&seen.faces) {
-                self.faces[place as usize] = face;
+            for (&index, &face) in places.iter().zip(&seen.faces) {
+                self.faces[index as usize] = face;
             }
         }
     }
@@ -198,8 +198,8 @@ impl<R: Real> Traced<R> {
             for number in column.iter_mut() {
                 *number = *number * R::from_f64(DARKENED);
             }
-            for &place in places {
-                column[place as usize] = R::ONE;
+            for &index in places {
+                column[index as usize] = R::ONE;
             }
         }
     }

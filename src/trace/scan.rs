@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use super::beside::Beside;
 use super::bundle::Bundle;
 use super::candidates::Candidates;
+use super::entry_points::EntryPoints;
 use super::paths::Paths;
-use super::roots::Roots;
-use super::walk::{Seek, Stack, walk, walk_beside};
-use crate::plan::{Child, Geometry, IdleFaces, PackedMesh, Plan};
+use super::thin_margin::ThinMargin;
+use super::walk::{Stack, TreeVisitor, walk, walk_thin};
+use crate::plan::{Child, CulledFaces, Geometry, PackedMesh, Plan};
 use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
 use crate::simd::{SimdFloat, Vec3};
 
 /// What is to be found out about each primitive.
 pub trait Test<L: SimdFloat> {
     /// Whether thin things beside the rays count, and not what they meet.
-    const LOOKS_BESIDE: bool = false;
+    const FINDS_THIN: bool = false;
 
     /// How far each ray still looks; not above 0 where it does not.
     fn reach(&self) -> L;
@@ -41,7 +41,7 @@ pub trait Test<L: SimdFloat> {
     /// What is tested from now on is no face of that mesh.
     fn leave_mesh(&mut self) {}
 
-    /// Tests what is in a box for the rays that see it as one thing, see [`Seek::settle`].
+    /// Tests what is in a box for the rays that see it as one thing, see [`TreeVisitor::settle`].
     fn settle(
         &mut self,
         _ball: (Vec3<L::Real>, L::Real),
@@ -71,28 +71,32 @@ pub trait Test<L: SimdFloat> {
 #[inline(always)]
 pub fn scan_lists<L: SimdFloat>(
     plan: &Plan<L::Real>,
-    among: &Candidates,
+    targets: &Candidates,
     paths: &Paths<L>,
     test: &mut impl Test<L>,
 ) {
-    plan.primitives.visit(&mut Lists { among, paths, test });
+    plan.primitives.visit(&mut ListScan {
+        targets,
+        paths,
+        test,
+    });
 }
 
-struct Lists<'a, L, T> {
-    among: &'a Candidates,
+struct ListScan<'a, L, T> {
+    targets: &'a Candidates,
     paths: &'a Paths<L>,
     test: &'a mut T,
 }
 
-impl<L: SimdFloat, T: Test<L>> Visit<L::Real> for Lists<'_, L, T> {
+impl<L: SimdFloat, T: Test<L>> Visit<L::Real> for ListScan<'_, L, T> {
     #[inline(always)]
     fn visit<P: Primitive<L::Real>>(&mut self, kind: Kind, primitives: &[P], first: usize) {
-        let among = self.among.of(kind);
-        if among.is_empty() || self.test.is_done() {
+        let targets = self.targets.of(kind);
+        if targets.is_empty() || self.test.is_done() {
             return;
         }
         let prepared = P::prepare(self.paths.rays.direction);
-        for &index in among {
+        for &index in targets {
             let (primitive, number) = (&primitives[index as usize], first + index as usize);
             self.test.test(primitive, &prepared, self.paths, number);
             if self.test.is_done() {
@@ -103,15 +107,15 @@ impl<L: SimdFloat, T: Test<L>> Visit<L::Real> for Lists<'_, L, T> {
 }
 
 /// What stands in a tree, and how it is looked at.
-pub struct Thicket<'a, L: SimdFloat> {
+pub struct TreeScan<'a, L: SimdFloat> {
     /// What stands there.
     pub geometry: &'a Geometry<L::Real>,
     /// The number of its first primitive.
     pub first: usize,
     /// Where to start; at the roots of the trees, to look beside the rays.
-    pub roots: &'a Roots,
+    pub entry_points: &'a EntryPoints,
     /// For each mesh, the faces that are not tested, if there are any.
-    pub idle: &'a [Option<Arc<IdleFaces>>],
+    pub culled_faces: &'a [Option<Arc<CulledFaces>>],
     /// The point that boxes are held against the ways from, see [`Bundle::from_point`].
     pub back_from: Option<Vec3<L::Real>>,
     /// Where there is a ray.
@@ -119,12 +123,12 @@ pub struct Thicket<'a, L: SimdFloat> {
     /// How far the rays may be beside their place.
     pub blur: Blur<L>,
     /// How far beside the rays thin things are looked for, by a test that does.
-    pub beside: Beside<L::Real>,
+    pub margin: ThinMargin<L::Real>,
     /// Whether boxes are looked at; otherwise everything is tested.
     pub is_boxed: bool,
 }
 
-impl<L: SimdFloat> Thicket<'_, L> {
+impl<L: SimdFloat> TreeScan<'_, L> {
     /// Tests what the boxes of the tree hold that the rays meet.
     #[inline(always)]
     pub fn scan<T: Test<L>>(&self, paths: &Paths<L>, stack: &mut Stack<L::Real>, test: &mut T) {
@@ -137,46 +141,46 @@ impl<L: SimdFloat> Thicket<'_, L> {
         if !self.is_boxed {
             bundle.meet_all();
         }
-        let mut objects = Objects {
-            thicket: self,
+        let mut objects = ObjectVisitor {
+            tree_scan: self,
             bundle: &bundle,
             paths,
             prepared: Prepared::new(paths.rays.direction),
             test,
         };
-        if T::LOOKS_BESIDE {
+        if T::FINDS_THIN {
             // Of a mesh as a whole, the ball around it says how wide a pixel is, which may be passed long before the box.
-            let beside = if self.geometry.meshes.is_empty() {
-                self.beside
+            let margin = if self.geometry.meshes.is_empty() {
+                self.margin
             } else {
-                self.beside.without_narrowing()
+                self.margin.without_narrowing()
             };
-            walk_beside(bvh, &bundle, &beside, (stack, 0), &mut objects);
-        } else if let Some(start) = self.roots.of_objects(self.geometry) {
+            walk_thin(bvh, &bundle, &margin, (stack, 0), &mut objects);
+        } else if let Some(start) = self.entry_points.of_objects(self.geometry) {
             walk((bvh, start), &bundle, stack, &mut objects);
         }
     }
 }
 
 /// The members of the tree over all objects: primitives, then meshes.
-struct Objects<'a, L: SimdFloat, T> {
-    thicket: &'a Thicket<'a, L>,
+struct ObjectVisitor<'a, L: SimdFloat, T> {
+    tree_scan: &'a TreeScan<'a, L>,
     bundle: &'a Bundle<L>,
     paths: &'a Paths<L>,
     prepared: Prepared<L>,
     test: &'a mut T,
 }
 
-impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
+impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
     #[inline(always)]
     fn reach(&self) -> L {
-        active_reach(self.thicket.active, self.test)
+        active_reach(self.tree_scan.active, self.test)
     }
 
     #[inline(always)]
     fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>) {
-        let (geometry, index) = (self.thicket.geometry, member as usize);
-        let number = self.thicket.first + index;
+        let (geometry, index) = (self.tree_scan.geometry, member as usize);
+        let number = self.tree_scan.first + index;
         let primitives = &geometry.primitives;
         if let Some(mesh) = index.checked_sub(primitives.len()) {
             return self.meet_mesh((mesh, width), stack);
@@ -191,7 +195,7 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
 
     #[inline(always)]
     fn settle(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
-        let active = self.thicket.active;
+        let active = self.tree_scan.active;
         self.test.settle(ball, thickness, self.paths, active)
     }
 
@@ -201,19 +205,19 @@ impl<L: SimdFloat, T: Test<L>> Seek<L> for Objects<'_, L, T> {
     }
 }
 
-impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
+impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
     /// Looks into a mesh, from its own middle.
     #[inline(always)]
     fn meet_mesh(&mut self, (mesh, width): (usize, L::Real), stack: &mut Stack<L::Real>) {
-        let Thicket {
+        let TreeScan {
             geometry,
             first,
-            roots,
-            idle,
+            entry_points,
+            culled_faces,
             active,
-            beside,
+            margin,
             ..
-        } = self.thicket;
+        } = self.tree_scan;
         let instance = &geometry.meshes[mesh];
         let rays = self.paths.rays;
         let paths = Paths {
@@ -228,20 +232,20 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
             return;
         };
         let bundle = self.bundle.seen_from(instance.centre);
-        let mut faces = Faces {
+        let mut faces = FaceVisitor {
             mesh: &instance.mesh,
-            idle: idle.get(mesh).and_then(Option::as_deref),
+            culled_faces: culled_faces.get(mesh).and_then(Option::as_deref),
             first: first + instance.first,
             active,
             paths: &paths,
             prepared: &self.prepared,
             test: self.test,
         };
-        if T::LOOKS_BESIDE {
+        if T::FINDS_THIN {
             let settled = faces.test.leave_out(0);
-            walk_beside(bvh, &bundle, beside, (stack, settled), &mut faces);
+            walk_thin(bvh, &bundle, margin, (stack, settled), &mut faces);
             faces.test.leave_out(settled);
-        } else if let Some(start) = roots.of_mesh(geometry, mesh) {
+        } else if let Some(start) = entry_points.of_mesh(geometry, mesh) {
             walk((bvh, start), &bundle, stack, &mut faces);
         }
         self.test.leave_mesh();
@@ -249,10 +253,10 @@ impl<L: SimdFloat, T: Test<L>> Objects<'_, L, T> {
 }
 
 /// The members of the tree of a mesh.
-struct Faces<'a, L: SimdFloat, T> {
+struct FaceVisitor<'a, L: SimdFloat, T> {
     mesh: &'a PackedMesh<L::Real>,
     /// What is left out.
-    idle: Option<&'a IdleFaces>,
+    culled_faces: Option<&'a CulledFaces>,
     first: usize,
     active: L::Mask,
     paths: &'a Paths<L>,
@@ -260,17 +264,17 @@ struct Faces<'a, L: SimdFloat, T> {
     test: &'a mut T,
 }
 
-impl<L: SimdFloat, T: Test<L>> Seek<L> for Faces<'_, L, T> {
+impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     #[inline(always)]
     fn reach(&self) -> L {
         active_reach(self.active, self.test)
     }
 
     #[inline(always)]
-    fn is_idle(&self, child: Child) -> bool {
-        match self.idle {
+    fn is_culled(&self, child: Child) -> bool {
+        match self.culled_faces {
             None => false,
-            Some(idle) => idle.holds(child),
+            Some(culled_faces) => culled_faces.holds(child),
         }
     }
 

@@ -3,20 +3,20 @@
 //! Rays that travel in step may hit different things: each kind of thing that was hit is lit for its own
 //! rays, each material colours its own part, and the results are put together.
 
-use super::candidates::{Among, Candidates};
-use super::coat::Coat;
+use super::candidates::{Candidates, Targets};
 use super::cull::LightCandidates;
 use super::doubt::{Doubt, Slant, Uncertainty, is_filtered};
 use super::footprint::Footprint;
+use super::hit_material::HitMaterial;
 use super::intersect::{Blocked, Kernel};
 use super::mirrored::Mirrored;
+use super::mixed_materials::{ArrivingLight, MixedMaterials};
 use super::packet::{EdgeInfo, Packet};
-use super::parts::{Arriving, Parts};
 use super::paths::{IgnoredPrimitive, NOTHING, Paths};
 use super::shadows::light_bit;
 use super::stats::Rays;
 use super::surface::Hit;
-use super::thin::Gaze;
+use super::thin::ThinQuery;
 use super::thresholds::EDGE_CONTRAST;
 use super::walk::Stack;
 use crate::plan::{PointLight, Show};
@@ -32,7 +32,7 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// Whether mirrors send rays on.
     pub may_mirror: bool,
     /// Whether what may slip between samples is looked for.
-    pub looks_beside: bool,
+    pub looks_for_thin: bool,
     /// What rays can meet, or just miss, that may slip between samples.
     pub thin: &'a Candidates,
     /// What can stand before each light.
@@ -47,7 +47,7 @@ pub type Notes<'a, L> = (Option<&'a mut EdgeInfo<L>>, Option<&'a mut Uncertainty
 /// The hits of one packet on one primitive, or on several of a kind.
 struct ShadingPoint<'a, L: SimdFloat> {
     hit: Hit<L>,
-    coat: Coat<'a, L>,
+    material: HitMaterial<'a, L>,
     /// Where the rays were going.
     view: Vec3<L>,
     /// How large a pixel is here, where edges are noted.
@@ -67,7 +67,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     /// Whether rays look beside themselves for one of these.
     #[inline(always)]
     fn looks_for(&self, thin: &Candidates) -> bool {
-        self.looks_beside && !thin.is_empty()
+        self.looks_for_thin && !thin.is_empty()
     }
 
     /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
@@ -77,7 +77,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &self,
         packet: &mut Packet<L>,
         (ignored, (mut edge, uncertainty)): (IgnoredPrimitive<L>, Notes<L>),
-        parts: &mut Parts<L>,
+        mixed: &mut MixedMaterials<L>,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) -> Option<Mirrored<L>> {
         let kernel = self.kernel;
@@ -93,7 +93,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 rays: packet.rays,
                 ignored,
             };
-            let gaze = Gaze {
+            let query = ThinQuery {
                 paths: &paths,
                 active: told,
                 cone: edge.cone,
@@ -102,26 +102,26 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 reach: packet.near.t,
                 is_to_light: false,
             };
-            edge.near = kernel.thin_distance(self.thin, &gaze, stack);
+            edge.near = kernel.thin_distance(self.thin, &query, stack);
         }
 
         // Each primitive that was hit, for all rays that have hit it or others of its kind.
         let nothing = kernel.splat(NOTHING);
         let mut left = (nothing.less(packet.near.number) & told).bits();
         while left != 0 {
-            let mut hit = kernel.refine(&packet.rays, &packet.near, left, parts);
+            let mut hit = kernel.refine(&packet.rays, &packet.near, left, mixed);
             left &= !hit.here.bits();
             let instead = self.instead(packet, &hit);
-            let Some(coat) = self.coat(packet, &mut hit, (instead, told), parts) else {
+            let Some(material) = self.material(packet, &mut hit, (instead, told), mixed) else {
                 continue;
             };
-            let mut point = self.shading_point(packet, hit, coat, (&edge, &uncertainty));
+            let mut point = self.shading_point(packet, hit, material, (&edge, &uncertainty));
             if let Some(own) = uncertainty.as_deref_mut() {
                 self.doubt_mirrors(&point, own);
                 point.hit.here = point.hit.here & !own.doubt;
             }
             if instead.is_none() {
-                let mut arriving = Arriving {
+                let mut arriving = ArrivingLight {
                     matte: kernel.splat(0.0),
                     highlight: kernel.splat(0.0),
                     doubt: nothing.less(nothing),
@@ -142,16 +142,16 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let (seen, look) = ((&hit, &footprint), (point.coat, point.view));
+                    let (seen, look) = ((&hit, &footprint), (point.material, point.view));
                     edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, look, lit, stack);
                 }
-                match point.coat {
-                    Coat::One(surface) => {
+                match point.material {
+                    HitMaterial::One(surface) => {
                         let color = packet.color + arriving.color(surface, kernel.plan.show);
                         packet.color = Vec3::select(point.hit.here, color, packet.color);
                     }
-                    Coat::Several(parts) => {
-                        parts.color(kernel.plan, &arriving, &mut packet.color);
+                    HitMaterial::Several(mixed) => {
+                        mixed.color(kernel.plan, &arriving, &mut packet.color);
                     }
                 }
             }
@@ -204,7 +204,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &self,
         packet: &Packet<L>,
         mut hit: Hit<L>,
-        coat: Coat<'a, L>,
+        material: HitMaterial<'a, L>,
         (edge, uncertainty): (&Option<&mut EdgeInfo<L>>, &Option<&mut Uncertainty<L>>),
     ) -> ShadingPoint<'a, L> {
         let view = packet.rays.direction;
@@ -228,7 +228,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         };
         ShadingPoint {
             hit,
-            coat,
+            material,
             view,
             footprint,
             slant,
@@ -238,34 +238,34 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     /// What hits are made of, if light falls on some, which then alone are there; the packet gets the colours that
     /// they have without light, or those in their place.
     #[inline(always)]
-    fn coat<'a>(
+    fn material<'a>(
         &'a self,
         packet: &mut Packet<L>,
         hit: &mut Hit<L>,
         (instead, told): (Option<Vec3<L>>, L::Mask),
-        parts: &'a mut Parts<L>,
-    ) -> Option<Coat<'a, L>> {
+        mixed: &'a mut MixedMaterials<L>,
+    ) -> Option<HitMaterial<'a, L>> {
         let materials = &self.kernel.plan.materials[..];
         if TREE && hit.is_mixed {
-            hit.here = parts.set_base(materials, instead, &mut packet.color)?;
-            return Some(Coat::Several(parts));
+            hit.here = mixed.set_base(materials, instead, &mut packet.color)?;
+            return Some(HitMaterial::Several(mixed));
         }
         let material = &materials[hit.material as usize];
         let color = instead.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
         hit.here = hit.here & told;
         packet.color = Vec3::select(hit.here, color, packet.color);
-        material.surface.as_ref().map(Coat::One)
+        material.surface.as_ref().map(HitMaterial::One)
     }
 
     /// Where there are mirrors, and what their images are multiplied by.
     #[inline(always)]
     fn mirrors(&self, point: &ShadingPoint<L>) -> Option<(L::Mask, Vec3<L>)> {
-        match point.coat {
-            Coat::One(surface) => {
+        match point.material {
+            HitMaterial::One(surface) => {
                 let filter = Vec3::broadcast(self.kernel.token, surface.mirror?);
                 Some((point.hit.here, filter))
             }
-            Coat::Several(parts) => parts.mirror(self.kernel.plan, self.kernel.splat(0.0)),
+            HitMaterial::Several(mixed) => mixed.mirror(self.kernel.plan, self.kernel.splat(0.0)),
         }
     }
 
@@ -306,7 +306,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         edge: Option<&mut EdgeInfo<L>>,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        arriving: &mut Arriving<L>,
+        arriving: &mut ArrivingLight<L>,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let (kernel, hit) = (self.kernel, &point.hit);
@@ -335,7 +335,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             // Also where nothing was found that may be in the way: what is found depends on the rays beside these.
             let mut doubt = facing & slant.is_lost;
             if !light.may_touch {
-                let shiny = point.coat.shiny(hit.here);
+                let shiny = point.material.shiny(hit.here);
                 doubt =
                     doubt | cosine.abs().at_most(lowest) | slant.grazes((cosine, shrink), shiny);
             }
@@ -351,8 +351,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut lit = lit_side;
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let (paths, reach) = kernel.towards(hit, light, (l, distance));
-            let looks_beside = self.looks_for(&candidates.thin);
-            let beside = edge.as_mut().filter(|_| looks_beside);
+            let looks_for_thin = self.looks_for(&candidates.thin);
+            let beside = edge.as_mut().filter(|_| looks_for_thin);
             let mut thick = None;
             if let Some((_, footprint)) = &beside {
                 thick = Some(footprint.slipping());
@@ -366,15 +366,15 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 // What is in the shadow of something wide is not seen to be in that of something thin as well.
                 let open = facing & !blocked.wide;
                 // The shadow of a light that nobody sees is not seen either.
-                let brightness = point.coat.brightness(kernel.plan, zero);
+                let brightness = point.material.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);
                 let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
                 let dim = open & lit_side & !visible;
                 if dim.any() {
                     let from = (cosine, hit.surface.normal, l - point.view);
-                    visible = visible | dim & point.coat.shows(kernel.plan, light, from);
+                    visible = visible | dim & point.material.shows(kernel.plan, light, from);
                 }
-                let gaze = Gaze {
+                let query = ThinQuery {
                     paths: &paths,
                     active: open & visible,
                     cone: footprint.shadow(distance),
@@ -383,7 +383,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     reach,
                     is_to_light: true,
                 };
-                let near = kernel.thin_distance(&candidates.thin, &gaze, stack);
+                let near = kernel.thin_distance(&candidates.thin, &query, stack);
                 edge.near = near.min(edge.near);
             }
             lit = lit & !blocked.anywhere;
@@ -402,16 +402,16 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let matte = arriving.matte + cosine * intensity;
         arriving.matte = L::select(lit, matte, arriving.matte);
         let (normal, half) = (hit.surface.normal, l - point.view);
-        if let Some(highlight) = point.coat.highlight(normal, half) {
+        if let Some(highlight) = point.material.highlight(normal, half) {
             let highlight = arriving.highlight + highlight * intensity;
             arriving.highlight = L::select(lit, highlight, arriving.highlight);
         }
         if let Some((edge, footprint)) = edge {
             let bit = kernel.splat(light_bit(source.index));
             edge.lit = L::select(lit, edge.lit + bit, edge.lit);
-            if point.coat.is_sharp() {
+            if point.material.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();
-                let near = point.coat.highlight_distance(footprint, off, distance);
+                let near = point.material.highlight_distance(footprint, off, distance);
                 edge.near = L::select(lit, near.min(edge.near), edge.near);
             }
         }
@@ -424,14 +424,14 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
         (paths, (reach, shrink), facing, thick): (&Paths<L>, (L, L), L::Mask, Option<L>),
-        (arriving, stack): (&mut Arriving<L>, &mut Stack<L::Real>),
+        (arriving, stack): (&mut ArrivingLight<L>, &mut Stack<L::Real>),
     ) -> Blocked<L> {
         let (kernel, light) = (self.kernel, source.light);
-        let among = Among {
+        let targets = Targets {
             candidates: &source.candidates.casters,
-            roots: &source.candidates.roots,
+            entry_points: &source.candidates.entry_points,
             light: Some(light),
-            idle: &light.idle_faces,
+            culled_faces: &light.culled_faces,
         };
         let onwards = match &point.slant {
             None => Blur::splat(kernel.token, Blur::NONE),
@@ -440,7 +440,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         // What a light is on does not stand before it.
         let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
         let wanted = (reach, facing, thick);
-        let blocked = kernel.blocked(among, (paths, doubt), wanted, stack);
+        let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
         if point.slant.is_some() {
             arriving.doubt = arriving.doubt | facing & blocked.doubt;
         }

@@ -1,8 +1,8 @@
 //! Where rays have met a primitive, refined, and the rays that start there.
 
-use super::gather::{Gathered, Piece};
+use super::gather::{Gathered, HitPrimitive};
 use super::intersect::{Kernel, Nearest};
-use super::parts::Parts;
+use super::mixed_materials::MixedMaterials;
 use super::paths::{IgnoredPrimitive, Paths};
 use crate::plan::{PointLight, RayOrigin};
 use crate::primitive::{Primitive, Ray, SurfacePoint, WithPrimitive, roundings};
@@ -46,7 +46,7 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something; `parts`
+    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something; `mixed`
     /// become the materials there, if it is not one.
     #[inline(always)]
     pub fn refine(
@@ -54,7 +54,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         rays: &Ray<L>,
         nearest: &Nearest<L>,
         left: u64,
-        parts: &mut Parts<L>,
+        mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
         let number = nearest.number.lane(left.trailing_zeros() as usize);
         let refine = Refine {
@@ -66,8 +66,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         match self.geometry() {
             Some((geometry, first)) if refine.number >= first => {
                 let index = refine.number - first;
-                match Piece::of(geometry, index) {
-                    Some(piece) => self.refine_alike(&piece, (rays, nearest, left), parts),
+                match HitPrimitive::of(geometry, index) {
+                    Some(hit_primitive) => {
+                        self.refine_alike(&hit_primitive, (rays, nearest, left), mixed)
+                    }
                     None => geometry.primitives.with(index, refine),
                 }
             }
@@ -75,29 +77,29 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// The hits on everything that is like one piece: each ray has met its own, and they are lit as one.
+    /// The hits on everything that is like one primitive: each ray has met its own, and they are lit as one.
     #[inline(never)]
     fn refine_alike(
         self,
-        piece: &Piece<L::Real>,
+        hit_primitive: &HitPrimitive<L::Real>,
         (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
-        parts: &mut Parts<L>,
+        mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
         L::vectorize(
             self.token,
             #[inline(always)]
-            || self.refine_alike_vectorized(piece, (rays, nearest, left), parts),
+            || self.refine_alike_vectorized(hit_primitive, (rays, nearest, left), mixed),
         )
     }
 
     #[inline(always)]
     fn refine_alike_vectorized(
         self,
-        piece: &Piece<L::Real>,
+        hit_primitive: &HitPrimitive<L::Real>,
         (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
-        parts: &mut Parts<L>,
+        mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
-        let mut gathered = Gathered::like(piece);
+        let mut gathered = Gathered::like(hit_primitive);
         let mut left = left;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
@@ -105,18 +107,18 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             if let Some((geometry, first)) = self.geometry()
                 && let number = nearest.number.lane(lane).to_f64() as usize
                 && number >= first
-                && let Some(other) = Piece::of(geometry, number - first)
-                && other.is_like(piece)
+                && let Some(other) = HitPrimitive::of(geometry, number - first)
+                && other.is_like(hit_primitive)
             {
                 gathered.set(lane, &other);
             }
         }
-        gathered.part::<L>(self.token, parts);
+        gathered.part::<L>(self.token, mixed);
         Hit {
             here: gathered.mask::<L>(self.token),
-            surface: gathered.refine(piece, rays, nearest.t),
-            material: piece.material,
-            is_mixed: parts.are_several(),
+            surface: gathered.refine(hit_primitive, rays, nearest.t),
+            material: hit_primitive.material,
+            is_mixed: mixed.are_several(),
             own: IgnoredPrimitive::in_tree(nearest.number),
         }
     }

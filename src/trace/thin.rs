@@ -2,14 +2,14 @@
 //! that are narrower than two pixels. A sample that passes such a thing closely says so, and is then
 //! not left alone.
 
-use super::beside::Beside;
-use super::candidates::{Among, Candidates};
+use super::candidates::{Candidates, Targets};
+use super::entry_points::EntryPoints;
 use super::footprint::{RayCone, pixels};
 use super::intersect::Kernel;
 use super::paths::Paths;
-use super::roots::Roots;
-use super::scan::{Test, Thicket, scan_lists};
-use super::slip::least_pixels;
+use super::scan::{Test, TreeScan, scan_lists};
+use super::thin_cull::least_pixels;
+use super::thin_margin::ThinMargin;
 use super::thresholds::{
     CLOSE, CROWD, LARGEST_SPREAD, ONE_THING, SLIPPING, WIDEST_SPREAD, WIDEST_TO_LIGHTS,
 };
@@ -20,7 +20,7 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Rays that look beside themselves.
 #[derive(Clone, Copy, Debug)]
-pub struct Gaze<'a, L: SimdFloat> {
+pub struct ThinQuery<'a, L: SimdFloat> {
     /// The rays.
     pub paths: &'a Paths<L>,
     /// Where there is a ray.
@@ -46,54 +46,54 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn thin_distance(
         self,
-        among: &Candidates,
-        gaze: &Gaze<L>,
+        targets: &Candidates,
+        query: &ThinQuery<L>,
         stack: &mut Stack<L::Real>,
     ) -> L {
         let spread = self.plan.view.spread();
         let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
-        let widest = match (self.plan.things < CROWD, gaze.is_to_light) {
+        let widest = match (self.plan.things < CROWD, query.is_to_light) {
             (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
             (false, true) => narrow,
             (false, false) => spread * L::Real::from_f64(WIDEST_SPREAD),
         };
-        let is_narrow = gaze.spread.at_most(self.splat(0.0).like(narrow));
-        let is_looking = gaze.spread.at_most(self.splat(0.0).like(widest));
-        let gaze = &Gaze {
-            active: gaze.active & is_looking,
-            ..*gaze
+        let is_narrow = query.spread.at_most(self.splat(0.0).like(narrow));
+        let is_looking = query.spread.at_most(self.splat(0.0).like(widest));
+        let query = &ThinQuery {
+            active: query.active & is_looking,
+            ..*query
         };
-        let mut test = ThinTest::new(gaze, true, self.infinity());
-        scan_lists(self.plan, among, gaze.paths, &mut test);
+        let mut test = ThinTest::new(query, true, self.infinity());
+        scan_lists(self.plan, targets, query.paths, &mut test);
         let mut best = test.best;
         // Their starts leave out what is beside the rays.
-        let roots = Roots::default();
-        let among = Among {
-            candidates: among,
-            roots: &roots,
+        let entry_points = EntryPoints::default();
+        let targets = Targets {
+            candidates: targets,
+            entry_points: &entry_points,
             light: None,
-            idle: &[],
+            culled_faces: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
         // Apart from each other: boxes are as wide as the widest pixel.
         for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
-            let looking = gaze.active & looking;
+            let looking = query.active & looking;
             if looking.any()
-                && let Some(thicket) = self.thicket(among, (looking, exact))
+                && let Some(tree_scan) = self.tree_scan(targets, (looking, exact))
             {
-                best = self.thin_in(&thicket, (gaze, enters), best, stack);
+                best = self.thin_in(&tree_scan, (query, enters), best, stack);
             }
         }
-        L::select(gaze.active, best, self.infinity())
+        L::select(query.active, best, self.infinity())
     }
 
     /// The nearest of `best` and what stands in the tree, in meshes as well if that is entered.
     #[inline(never)]
     fn thin_in(
         self,
-        thicket: &Thicket<L>,
-        (gaze, enters): (&Gaze<L>, bool),
+        tree_scan: &TreeScan<L>,
+        (query, enters): (&ThinQuery<L>, bool),
         best: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -101,24 +101,24 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             self.token,
             #[inline(always)]
             || {
-                let active = thicket.active;
+                let active = tree_scan.active;
                 let (zero, never) = (self.splat(0.0), self.splat(-1.0) * self.infinity());
                 let widest = |width: L| L::select(active, width, zero).greatest();
-                let spread = L::select(active, gaze.cone.spread, never).greatest();
-                let beside = Beside {
+                let spread = L::select(active, query.cone.spread, never).greatest();
+                let margin = ThinMargin {
                     narrowing: L::Real::ZERO.max(-spread),
-                    least: widest(gaze.in_meshes.width),
-                    ..Beside::slipping(widest(gaze.cone.width), L::Real::ZERO.max(spread))
+                    least: widest(query.in_meshes.width),
+                    ..ThinMargin::slipping(widest(query.cone.width), L::Real::ZERO.max(spread))
                 };
-                let thicket = Thicket {
-                    beside,
+                let tree_scan = TreeScan {
+                    margin,
                     // What is narrow is found in the same way with and without boxes.
                     is_boxed: true,
-                    ..*thicket
+                    ..*tree_scan
                 };
-                let gaze = Gaze { active, ..*gaze };
-                let mut test = ThinTest::new(&gaze, enters, best);
-                thicket.scan(gaze.paths, stack, &mut test);
+                let query = ThinQuery { active, ..*query };
+                let mut test = ThinTest::new(&query, enters, best);
+                tree_scan.scan(query.paths, stack, &mut test);
                 L::select(active, test.best, best)
             },
         )
@@ -127,7 +127,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
 /// Looks for the thin thing that the rays pass most closely.
 struct ThinTest<'a, L: SimdFloat> {
-    gaze: &'a Gaze<'a, L>,
+    query: &'a ThinQuery<'a, L>,
     /// How many pixels away it is.
     best: L,
     /// Whether the rays look into meshes, and not only at small ones as a whole.
@@ -142,7 +142,7 @@ struct ThinTest<'a, L: SimdFloat> {
 }
 
 /// How rays pass a ball.
-struct Passed<L> {
+struct BallApproach<L> {
     /// Where along the rays its middle is.
     along: L,
     /// How far from the rays that is.
@@ -156,25 +156,25 @@ struct Passed<L> {
 impl<'a, L: SimdFloat> ThinTest<'a, L> {
     /// Looks for what is nearer than `best`.
     #[inline(always)]
-    fn new(gaze: &'a Gaze<'a, L>, enters: bool, best: L) -> Self {
-        let all = gaze.active | !gaze.active;
+    fn new(query: &'a ThinQuery<'a, L>, enters: bool, best: L) -> Self {
+        let all = query.active | !query.active;
         Self {
-            gaze,
+            query,
             best,
             enters,
             counted: all,
-            cone: gaze.cone,
+            cone: query.cone,
             settled: 0,
             open: all,
         }
     }
 
     #[inline(always)]
-    fn passed(&self, center: Vec3<L::Real>, radius: L::Real, paths: &Paths<L>) -> Passed<L> {
+    fn passed(&self, center: Vec3<L::Real>, radius: L::Real, paths: &Paths<L>) -> BallApproach<L> {
         let x = paths.rays.origin - paths.rays.origin.like(center);
         let along = -paths.rays.direction.dot(x);
         let off = (x + paths.rays.direction * along).length();
-        Passed {
+        BallApproach {
             along,
             off,
             radius: off.like(radius),
@@ -185,7 +185,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
     /// Where a primitive counts that rays approach like this, and how wide a pixel is there.
     #[inline(always)]
     fn counts<P: Primitive<L::Real>>(&self, primitive: &P, approach: &Approach<L>) -> (L::Mask, L) {
-        let Gaze { cone, reach, .. } = self.gaze;
+        let ThinQuery { cone, reach, .. } = self.query;
         let Approach { from, to, size, .. } = *approach;
         let zero = to.like(L::Real::ZERO);
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
@@ -196,7 +196,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
 
     /// Notes a ball that is so far beside the rays, where it counts.
     #[inline(always)]
-    fn note(&mut self, ball: &Passed<L>, counts: L::Mask, beside: L) {
+    fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, beside: L) {
         let width = ball.width;
         // Whether a ray meets what is inside, nobody asks: it passes closely enough.
         let beside = beside.max(width * width.like_f64(CLOSE));
@@ -206,7 +206,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
 }
 
 impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
-    const LOOKS_BESIDE: bool = true;
+    const FINDS_THIN: bool = true;
 
     #[inline(always)]
     fn test_ball(
@@ -222,14 +222,14 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             if !self.enters {
                 return None;
             }
-            self.cone = self.gaze.in_meshes;
+            self.cone = self.query.in_meshes;
             return Some(active);
         }
         let ball = self.passed(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
         // The box reaches farther than the mesh: rays in its corners pass by.
         let beside = ball.off - ball.off.like(mesh.reach);
-        let is_before = (ball.along - ball.radius).less(self.gaze.reach + ball.width);
+        let is_before = (ball.along - ball.radius).less(self.query.reach + ball.width);
         let is_ahead = ball
             .width
             .like(L::Real::ZERO)
@@ -238,7 +238,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let thickness = ball.width.like(mesh.bvh.thinnest);
         let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
-        let is_close = entry.less(self.gaze.reach + ball.width);
+        let is_close = entry.less(self.query.reach + ball.width);
         let counts = is_small & is_thin & is_before & is_ahead & is_close & self.open;
         self.note(&ball, counts, beside);
         let others = active & !is_small;
@@ -246,7 +246,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             return None;
         }
         self.counted = !is_small;
-        self.cone = self.gaze.in_meshes;
+        self.cone = self.query.in_meshes;
         Some(others)
     }
 
@@ -262,7 +262,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
         let is_one = (ball.radius + ball.radius).less(width * width.like_f64(ONE_THING));
         let is_thin = width.like(thickness).less(width * width.like_f64(SLIPPING));
-        let is_there = zero.less(ball.along) & ball.along.less(self.gaze.reach + width);
+        let is_there = zero.less(ball.along) & ball.along.less(self.query.reach + width);
         let counts = is_one & is_thin & is_there & self.counted & self.open;
         self.note(&ball, counts, ball.off - ball.radius);
         (is_one | !active).bits()
@@ -284,12 +284,12 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
     #[inline(always)]
     fn leave_mesh(&mut self) {
         self.counted = self.counted | !self.counted;
-        self.cone = self.gaze.cone;
+        self.cone = self.query.cone;
     }
 
     #[inline(always)]
     fn reach(&self) -> L {
-        self.gaze.reach
+        self.query.reach
     }
 
     #[inline(always)]
@@ -301,11 +301,11 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         number: usize,
     ) {
         let direction = paths.rays.direction;
-        let is_to_light = self.gaze.is_to_light;
+        let is_to_light = self.query.is_to_light;
         let far = primitive.is_far(if is_to_light { -direction } else { direction });
         let active = match far {
-            Some(far) => self.gaze.active & !far,
-            None => self.gaze.active,
+            Some(far) => self.query.active & !far,
+            None => self.query.active,
         };
         if !active.any() {
             return;

@@ -7,17 +7,17 @@ use std::time::{Duration, Instant};
 use rayon::iter::{IndexedParallelIterator as _, IntoParallelIterator as _, ParallelIterator as _};
 use rayon::slice::ParallelSliceMut as _;
 
-use super::again::Exact;
 use super::band::Band;
 use super::candidates::Candidates;
 use super::canvas::Pixels;
 use super::control::RenderControl;
 use super::engine::Reference;
-use super::shelf::Shelf;
+use super::messages::{BandMessages, EdgeMessages};
+use super::retrace::DoubleReference;
 use super::stats::Rays;
 use super::threads::Threads;
 use super::tile::{Grid, Pass, Pixel};
-use super::told::{Hearing, Told};
+use super::workspace_pool::WorkspacePool;
 use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double, is_filtered};
 use crate::scene::{Aspect, Sampling, Scene};
 use crate::simd::{Level, SimdReal};
@@ -63,8 +63,8 @@ pub struct Tracer {
     level: Level,
     plan: PlanOf,
     /// What traces again what single precision leaves in doubt.
-    exact: Option<Exact>,
-    shelf: Shelf,
+    exact: Option<DoubleReference>,
+    workspace_pool: WorkspacePool,
 }
 
 #[derive(Debug)]
@@ -106,7 +106,10 @@ impl Tracer {
         } else if is_filtered {
             let (mut plan, exact) = rayon::join(in_single, in_double);
             plan.doubt();
-            (PlanOf::Single(plan), Some(Exact::new(exact, level)))
+            (
+                PlanOf::Single(plan),
+                Some(DoubleReference::new(exact, level)),
+            )
         } else {
             (PlanOf::Single(in_single()), None)
         };
@@ -131,7 +134,7 @@ impl Tracer {
             level,
             plan,
             exact,
-            shelf: Shelf::default(),
+            workspace_pool: WorkspacePool::default(),
         }
     }
 
@@ -234,7 +237,7 @@ impl Tracer {
         let seen = Candidates::all_seen(plan);
         let samples = (Grid::ALL, self.sampling);
         let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
-        let told = self.told(0..self.height, self.sampling);
+        let messages = self.edge_messages(0..self.height, self.sampling);
         let time = |place: Region| {
             let width = place.columns.1 - place.columns.0;
             let height = place.rows.1 - place.rows.0;
@@ -242,7 +245,7 @@ impl Tracer {
             let since = Instant::now();
             // Nobody stops it.
             let control = RenderControl::default();
-            let notes = (Hearing::all(&told), &control);
+            let notes = (BandMessages::all(&messages), &control);
             let _ = self.piece((plan, &seen), (place, rows), samples, notes);
             since.elapsed()
         };
@@ -255,7 +258,7 @@ impl Tracer {
         (plan, seen): (&Plan<R>, &Candidates),
         (place, pixels): (Region, Vec<&mut [P]>),
         (grid, sampling): (Grid, Sampling),
-        (hearing, control): (Hearing, &RenderControl),
+        (messages, control): (BandMessages, &RenderControl),
     ) -> Option<Rays> {
         // Outside of the kernel, which is left alone; a piece is short beside what anybody waits for.
         control.wait();
@@ -275,9 +278,9 @@ impl Tracer {
             canvas: &mut canvas,
             grid,
             sampling,
-            hearing,
+            messages,
             reference: self.exact.as_ref().map(|exact| exact as &dyn Reference),
-            shelf: &self.shelf,
+            workspace_pool: &self.workspace_pool,
             control,
         })
     }
@@ -296,7 +299,7 @@ impl Tracer {
             Pass::Centres(grid) => (grid, Sampling::Centres),
         };
         let rows = pixels.len() / self.width.max(1);
-        let mut told = self.told(first..first + rows, sampling);
+        let mut messages = self.edge_messages(first..first + rows, sampling);
         let piece = self.columns_of_pieces(rows, Threads::current());
         let bands = pixels
             .par_chunks_mut(self.width * self.tile)
@@ -310,7 +313,7 @@ impl Tracer {
                 let left = index * piece;
                 let columns = (left, (left + piece).min(self.width));
                 let place = Region { columns, rows };
-                let notes = (Hearing::all(&told), control);
+                let notes = (BandMessages::all(&messages), control);
                 self.piece((plan, &seen), (place, pixels), (grid, sampling), notes)
             });
             pieces.try_reduce(Rays::default, |a, b| Some(a + b))
@@ -319,33 +322,33 @@ impl Tracer {
             .map(trace)
             .try_reduce(Rays::default, |a, b| Some(a + b))?;
         loop {
-            let heard = told.heard();
-            if heard.is_empty() || plan.show == Show::Cost {
+            let received = messages.received();
+            if received.is_empty() || plan.show == Show::Cost {
                 return Some(rays);
             }
-            let (heard, seen) = ((&told, heard), (plan, &seen));
-            rays += self.pass_told(seen, (pixels, first), heard, control)?;
+            let (received, seen) = ((&messages, received), (plan, &seen));
+            rays += self.pass_notified(seen, (pixels, first), received, control)?;
         }
     }
 
     /// What the pixels of these rows are told by those beside them.
-    fn told(&self, rows: Range<usize>, sampling: Sampling) -> Told {
+    fn edge_messages(&self, rows: Range<usize>, sampling: Sampling) -> EdgeMessages {
         match sampling {
-            Sampling::Adaptive { .. } => Told::new(self.width, rows),
-            Sampling::Centres | Sampling::Grid(_) => Told::new(0, 0..0),
+            Sampling::Adaptive { .. } => EdgeMessages::new(self.width, rows),
+            Sampling::Centres | Sampling::Grid(_) => EdgeMessages::new(0, 0..0),
         }
     }
 
     /// Traces pixels again that were told something across the border of a tile.
-    fn pass_told<R: SimdReal, P: Pixel>(
+    fn pass_notified<R: SimdReal, P: Pixel>(
         &self,
         seen: (&Plan<R>, &Candidates),
         (pixels, first): (&mut [P], usize),
-        (told, heard): (&Told, BTreeSet<[usize; 2]>),
+        (messages, received): (&EdgeMessages, BTreeSet<[usize; 2]>),
         control: &RenderControl,
     ) -> Option<Rays> {
         let mut tiles: BTreeMap<[usize; 2], Vec<[usize; 2]>> = BTreeMap::new();
-        for [row, column] in heard {
+        for [row, column] in received {
             let tile = [(row - first) / self.tile, column / self.tile];
             tiles.entry(tile).or_default().push([row, column]);
         }
@@ -362,11 +365,11 @@ impl Tracer {
                 let part = pixels.chunks_mut(self.width);
                 let part = part.map(|row| &mut row[columns.0..columns.1]).collect();
                 let place = (Region { columns, rows }, part);
-                let hearing = Hearing {
-                    told,
+                let messages = BandMessages {
+                    messages,
                     those: Some(those),
                 };
-                let notes = (hearing, control);
+                let notes = (messages, control);
                 rays += self.piece(seen, place, (Grid::ALL, self.sampling), notes)?;
             }
             Some(rays)

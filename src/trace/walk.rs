@@ -1,14 +1,14 @@
 //! The way of a packet through a tree of boxes, the nearest first.
 
-use super::beside::Beside;
 use super::bundle::Bundle;
+use super::thin_margin::ThinMargin;
 use super::thresholds::ONE_THING;
 use crate::plan::{Bvh, Child, GROUP, Node};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// A box that waits to be looked into.
 #[derive(Clone, Copy, Debug)]
-pub struct Waiting<R> {
+pub struct StackEntry<R> {
     /// The node that it is in, and its place there.
     node: u32,
     place: u32,
@@ -21,14 +21,14 @@ pub struct Waiting<R> {
 }
 
 /// Boxes that wait, the nearest last; memory that is used again.
-pub type Stack<R> = Vec<Waiting<R>>;
+pub type Stack<R> = Vec<StackEntry<R>>;
 
 /// Looks for something among the members of a tree.
-pub trait Seek<L: SimdFloat> {
+pub trait TreeVisitor<L: SimdFloat> {
     /// How far each ray still looks; below 0 where it does not.
     fn reach(&self) -> L;
     /// Whether nothing is to be found there.
-    fn is_idle(&self, _child: Child) -> bool {
+    fn is_culled(&self, _child: Child) -> bool {
         false
     }
     /// Looks at a member, where a pixel is so wide at most if what is beside the rays is looked for.
@@ -56,13 +56,13 @@ const fn few(lanes: usize) -> u32 {
 /// The number of the node that a walk starts in, which need not be the root of the tree.
 const START: u32 = u32::MAX;
 
-/// Shows `seek` the members that the rays may meet, from a node on.
+/// Shows `visitor` the members that the rays may meet, from a node on.
 #[inline(always)]
 pub fn walk<L: SimdFloat>(
     (bvh, start): (&Bvh<L::Real>, &Node),
     bundle: &Bundle<L>,
     stack: &mut Stack<L::Real>,
-    seek: &mut impl Seek<L>,
+    visitor: &mut impl TreeVisitor<L>,
 ) {
     let bottom = stack.len();
     let (mut index, mut node) = (START, start);
@@ -70,7 +70,7 @@ pub fn walk<L: SimdFloat>(
     let mut lanes = bundle.active.bits();
     loop {
         let mut nears = [L::Real::ZERO; GROUP];
-        let reach = seek.reach();
+        let reach = visitor.reach();
         let mut bits = if lanes.count_ones() <= few(L::WIDTH) {
             bundle.few_meet(lanes, node, reach, &mut nears)
         } else {
@@ -82,14 +82,14 @@ pub fn walk<L: SimdFloat>(
             let place = bits.trailing_zeros();
             bits &= bits - 1;
             let child = node.child(place as usize);
-            if seek.is_idle(child) {
+            if visitor.is_culled(child) {
                 continue;
             }
             match child {
-                Child::Member(member) => seek.meet(member, L::Real::ZERO, stack),
+                Child::Member(member) => visitor.meet(member, L::Real::ZERO, stack),
                 Child::Node(inner) => {
                     let near = nears[place as usize];
-                    let waiting = Waiting {
+                    let entry = StackEntry {
                         node: index,
                         place,
                         inner,
@@ -98,16 +98,16 @@ pub fn walk<L: SimdFloat>(
                     };
                     // Sorted as it grows: there are few.
                     let mut at = stack.len();
-                    stack.push(waiting);
+                    stack.push(entry);
                     while at > above && stack[at - 1].near < near {
                         stack[at] = stack[at - 1];
                         at -= 1;
                     }
-                    stack[at] = waiting;
+                    stack[at] = entry;
                 }
             }
         }
-        let reach = seek.reach();
+        let reach = visitor.reach();
         let farthest = reach.greatest();
         index = loop {
             if stack.len() == bottom {
@@ -131,45 +131,45 @@ pub fn walk<L: SimdFloat>(
     }
 }
 
-/// Shows `seek` the thin members that the rays may come close to, but for those (bit by bit) that count no more
+/// Shows `visitor` the thin members that the rays may come close to, but for those (bit by bit) that count no more
 /// from the start. Each ray sees the same, whichever others are beside it.
 #[inline(always)]
-pub fn walk_beside<L: SimdFloat>(
+pub fn walk_thin<L: SimdFloat>(
     bvh: &Bvh<L::Real>,
     bundle: &Bundle<L>,
-    beside: &Beside<L::Real>,
+    margin: &ThinMargin<L::Real>,
     (stack, settled): (&mut Stack<L::Real>, u64),
-    seek: &mut impl Seek<L>,
+    visitor: &mut impl TreeVisitor<L>,
 ) {
     let all = (1_u64 << L::WIDTH) - 1;
     let mut settled = settled;
     let bottom = stack.len();
-    let reach = seek.reach();
+    let reach = visitor.reach();
     let (token, farthest, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
     let mut index = 0;
     while let Some(node) = bvh.nodes.get(index as usize) {
         let mut widths = [L::Real::ZERO; GROUP];
-        let mut bits = shaft.grazes::<L>(token, node, farthest, beside, &mut widths);
-        seek.leave_out(settled);
+        let mut bits = shaft.grazes::<L>(token, node, farthest, margin, &mut widths);
+        visitor.leave_out(settled);
         while bits != 0 {
             let place = bits.trailing_zeros();
             bits &= bits - 1;
             let width = widths[place as usize];
-            let end = beside.end(reach, reach.like(width));
+            let end = margin.end(reach, reach.like(width));
             if !bundle.each_meets(node, place as usize, end, width).any() {
                 continue;
             }
             match node.child(place as usize) {
-                Child::Member(member) => seek.meet(member, width, stack),
+                Child::Member(member) => visitor.meet(member, width, stack),
                 Child::Node(inner) => {
                     let mut settled = settled;
                     let ball = node.bounds(place as usize).ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
                         let thickness = L::Real::from_single(node.thickness[place as usize]);
-                        settled |= seek.settle(ball, thickness);
+                        settled |= visitor.settle(ball, thickness);
                     }
                     if settled & all != all {
-                        stack.push(Waiting {
+                        stack.push(StackEntry {
                             node: index,
                             place,
                             inner,

@@ -29,8 +29,8 @@ impl Addition {
     pub fn edit(self, scene: &Scene) -> Edit {
         let (at, size) = in_front_of_camera(scene);
         match self {
-            Self::Shape(place) => {
-                let shape = Shape::examples(at, size).swap_remove(place);
+            Self::Shape(index) => {
+                let shape = Shape::examples(at, size).swap_remove(index);
                 let low = scene.objects_bounds().map(|(low, _)| low.y);
                 let is_first = planes(scene).next().is_none();
                 let ground = || ground_distance(scene).filter(|_| is_first).map(|_| 0.0);
@@ -44,8 +44,8 @@ impl Addition {
                     _ => Edit::AddObject(shape.kind(), stood(scene, shape, size)),
                 }
             }
-            Self::Solid(place) => {
-                let solid = SOLIDS[place];
+            Self::Solid(index) => {
+                let solid = SOLIDS[index];
                 let mesh = Mesh {
                     position: at,
                     smooth: solid.smooth,
@@ -53,7 +53,7 @@ impl Addition {
                 };
                 Edit::AddObject(solid.name, stood(scene, mesh.into(), size))
             }
-            Self::Light => Edit::AddLight(at + DVec3::new(0.0, size, 0.0)),
+            Self::Light => Edit::AddLight(above(scene, at, size)),
             Self::Pack => Edit::AddPack,
         }
     }
@@ -63,14 +63,14 @@ impl Addition {
         let shapes = Shape::examples(DVec3::ZERO, 1.0).into_iter().enumerate();
         // Meshes have names of their own.
         let shapes = shapes.filter(|(_, shape)| !matches!(shape, Shape::Mesh(_)));
-        let shapes = shapes.map(|(place, shape)| {
+        let shapes = shapes.map(|(index, shape)| {
             let name = format!("Add {}", shape.kind());
-            (Self::Shape(place), icons::of_shape(&shape), name)
+            (Self::Shape(index), icons::of_shape(&shape), name)
         });
         let solids = SOLIDS.iter().enumerate();
-        let solids = solids.map(|(place, solid)| {
+        let solids = solids.map(|(index, solid)| {
             (
-                Self::Solid(place),
+                Self::Solid(index),
                 icons::MESH,
                 format!("Add {}", solid.name),
             )
@@ -158,6 +158,17 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
     let at = DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z));
     (at, tidy(size).max(SMALLEST))
+}
+
+/// Where a light goes that shines on a place from above: no higher than what the picture shows.
+fn above(scene: &Scene, at: DVec3, size: f64) -> DVec3 {
+    let framing = scene.camera.framing();
+    let is_seen = |point: &DVec3| {
+        let place = framing.as_ref().and_then(|framing| framing.project(*point));
+        place.is_some_and(|[_, y]| y.abs() < 0.5 - SHARE / 4.0)
+    };
+    let heights = [1.0, 0.75, 0.5, 0.25].map(|part| at + DVec3::Y * size * part);
+    heights.into_iter().find(is_seen).unwrap_or(at)
 }
 
 /// 0, 1, -1, 2, -2 and so on steps, as far as any picture reaches.

@@ -8,10 +8,10 @@ use super::autosave::Autosave;
 use super::commands::{Command, Next, goes_beside_popups, is_about_files, pressed};
 use super::examples::Examples;
 use super::exports::Exports;
+use super::file_requests::FileOutcome;
 use super::files::Files;
 use super::finder::Finder;
 use super::flying::Flying;
-use super::grain::Grain;
 use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
@@ -24,12 +24,12 @@ use super::scene_check::SceneCheck;
 use super::screenshot::Screenshot;
 use super::setup::Setup;
 use super::start::StartWatch;
+use super::step_size::StepSize;
 use super::still::Still;
 use super::timeline::{Overlay, Thumbs, TimelinePanel};
 use super::toasts::Toasts;
 use super::tools::{Screen, Tools};
 use super::why::Why;
-use super::wishes::FileOutcome;
 use super::{help, theme};
 use crate::editor::{Action, Editor, Mode, Time};
 use crate::image::Image;
@@ -71,7 +71,7 @@ pub struct App {
     pub(super) examples: Examples,
     pub(super) check: SceneCheck,
     pub(super) still: Still,
-    grain: Grain,
+    step_size: StepSize,
     pub(super) levels: Levels,
     pub(super) keys_are_taken: bool,
     /// Commands for the next frame.
@@ -135,7 +135,7 @@ impl App {
             examples: Examples::default(),
             check: SceneCheck::default(),
             still: Still::default(),
-            grain: Grain::default(),
+            step_size: StepSize::default(),
             levels: Levels::default(),
             keys_are_taken: false,
             deferred: Vec::new(),
@@ -324,7 +324,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         keep_readable(ui);
-        self.grain.update(ui.ctx(), self.editor.scene());
+        self.step_size.update(ui.ctx(), self.editor.scene());
         // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
         // menu closes, before this is asked.
         let was_typing = ui.text_edit_focused();

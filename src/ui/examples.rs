@@ -26,8 +26,8 @@ impl Examples {
     /// Takes the finished pictures of examples out of all.
     pub fn take(&mut self, ctx: &Context, pictures: &mut Vec<(u64, crate::image::Image)>) {
         pictures.retain(|(name, image)| {
-            let place = name.checked_sub(FIRST).map(|place| place as usize);
-            let Some(picture) = place.and_then(|place| self.pictures.get_mut(place)) else {
+            let index = name.checked_sub(FIRST).map(|index| index as usize);
+            let Some(picture) = index.and_then(|index| self.pictures.get_mut(index)) else {
                 return true;
             };
             *picture = Some(ctx.load_texture("example", whole(image), TextureOptions::LINEAR));
@@ -54,7 +54,7 @@ impl Examples {
     pub fn menu(&mut self, ui: &mut Ui, out: &mut UiRequests) {
         self.is_seen = true;
         let size = vec2(SIZE[0] as f32, SIZE[1] as f32);
-        for (place, (example, picture)) in EXAMPLES.iter().zip(&self.pictures).enumerate() {
+        for (index, (example, picture)) in EXAMPLES.iter().zip(&self.pictures).enumerate() {
             let (name, words) = (example.name, example.words());
             let button = match picture {
                 Some(picture) => {
@@ -65,7 +65,7 @@ impl Examples {
             };
             let entry = ui.add(button.min_size(vec2(2.0 * size.x, size.y)));
             if entry.accessible_name(name).hint(words).clicked() {
-                out.commands.push(Command::Leave(Next::Example(place)));
+                out.commands.push(Command::Leave(Next::Example(index)));
                 ui.close();
             }
         }

@@ -9,12 +9,12 @@ use egui::{Context, Ui};
 
 use super::commands::Next;
 use super::dialogs::{Ask, Dialogs};
+use super::file_requests::{Answered, FileOutcome, PathRequest, Prompt, Waiting};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_path, imported};
 use super::outside::{OUTSIDE, Theirs, Watch, forget_lost, tell_lost};
 use super::prompts::{PathPrompt, Reply, ask_about_changes, ask_to_quit};
 use super::reading::{Read, Reading};
-use super::wishes::{Answered, FileOutcome, PathRequest, Prompt, Waiting};
 use crate::editor::{Action, Editor, OwnFile, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
@@ -355,7 +355,7 @@ impl Files {
         }
         match next {
             Next::New => editor.start_new(),
-            Next::Example(place) => editor.start_example(&EXAMPLES[place]),
+            Next::Example(index) => editor.start_example(&EXAMPLES[index]),
             Next::Choose => self.ask(ctx, editor, Ask::OpenScene),
             Next::Open(path) => self.open(ctx, editor, &path),
             Next::Quit => return Some(FileOutcome::AskToQuit),

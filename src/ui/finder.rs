@@ -179,18 +179,18 @@ impl Finder {
             .min_scrolled_height(HEIGHT)
             .auto_shrink([false, true])
             .show(ui, |ui| {
-                for (place, find) in finds.iter().enumerate() {
+                for (index, find) in finds.iter().enumerate() {
                     let name = egui::RichText::new(&find.name).atom_shrink(true);
-                    let button = Button::selectable(place == self.meant, name)
+                    let button = Button::selectable(index == self.meant, name)
                         .truncate()
                         .right_text(&find.aside)
                         .min_size(vec2(ui.available_width(), ROW));
                     let shown = ui.add_enabled(find.is_enabled, button);
-                    if place == self.meant && (down > 0 || up > 0) {
+                    if index == self.meant && (down > 0 || up > 0) {
                         shown.scroll_to_me(None);
                     }
                     if shown.accessible_name(&find.name).clicked() {
-                        taken = Some(place);
+                        taken = Some(index);
                     }
                 }
             });
@@ -282,16 +282,16 @@ fn choices<'a>(
         let name = format!("Show or hide: {}", name.to_lowercase());
         (Command::Part(part), name)
     });
-    let examples = EXAMPLES.iter().enumerate().map(|(place, example)| {
+    let examples = EXAMPLES.iter().enumerate().map(|(index, example)| {
         (
-            Command::Leave(Next::Example(place)),
+            Command::Leave(Next::Example(index)),
             format!("Open the example: {}", example.name),
         )
     });
     let bookmarks = editor.scene().bookmarks.iter().enumerate();
-    let bookmarks = bookmarks.map(|(place, bookmark)| {
+    let bookmarks = bookmarks.map(|(index, bookmark)| {
         (
-            Command::GoToBookmark(place),
+            Command::GoToBookmark(index),
             format!("Go to the bookmark: {}", bookmark.name),
         )
     });

@@ -38,7 +38,7 @@ mod icons;
 
 mod menu_entry;
 
-mod dress;
+mod pack_drag;
 
 mod add;
 
@@ -54,7 +54,7 @@ mod interchange;
 
 mod reading;
 
-mod wishes;
+mod file_requests;
 
 mod files;
 
@@ -66,7 +66,7 @@ mod raster;
 
 mod arithmetic;
 
-mod grain;
+mod step_size;
 
 mod number;
 

@@ -9,8 +9,8 @@ use egui::{
 use glam::DVec3;
 
 use super::arithmetic::calculate;
-use super::grain::{USUAL, grain};
 use super::hint::Hinted as _;
+use super::step_size::{USUAL, step_size};
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::ui::commands::take_escape;
@@ -229,7 +229,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
         axis,
     } = *number;
     // What is no length has a size of its own.
-    let least = grain(ui.ctx()).max((field.default.abs() * 1e-3).min(USUAL));
+    let least = step_size(ui.ctx()).max((field.default.abs() * 1e-3).min(USUAL));
     let speed = (value.abs().max(size) * 0.01).max(least);
     let add = |ui: &mut Ui, widget: DragValue| {
         let widget = widget

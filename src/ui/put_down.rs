@@ -21,7 +21,7 @@ const LYING: f64 = 1e-3;
 const APART: f64 = 1e-6;
 
 /// A vertical line through a thing: where, and where the thing begins and ends there.
-struct Line {
+struct VerticalLine {
     x: f64,
     z: f64,
     low: f64,
@@ -87,17 +87,17 @@ fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
     }
     let mut bodies = Vec::new();
     let mut groups: IndexMap<&str, Vec<usize>> = IndexMap::new();
-    for place in selected.places(Kind::Object) {
-        match scene.objects[place].group.as_str() {
-            "" => bodies.push(vec![place]),
-            group => groups.entry(group).or_default().push(place),
+    for index in selected.places(Kind::Object) {
+        match scene.objects[index].group.as_str() {
+            "" => bodies.push(vec![index]),
+            group => groups.entry(group).or_default().push(index),
         }
     }
     for (group, own) in groups {
         if members.get(group) == Some(&own.len()) {
             bodies.push(own);
         } else {
-            bodies.extend(own.into_iter().map(|place| vec![place]));
+            bodies.extend(own.into_iter().map(|index| vec![index]));
         }
     }
     bodies
@@ -121,7 +121,7 @@ fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
 }
 
 /// Lines through these objects: so many along each side, and the one through their lowest point.
-fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<Line> {
+fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<VerticalLine> {
     let (low, high) = bounds(scene, body);
     let shapes = || body.iter().map(|&index| &scene.objects[index].shape);
     let top = |x: f64, z: f64| {
@@ -130,11 +130,11 @@ fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<Line> {
     };
     let share = |line: usize| (line as f64 + 0.5) / lines as f64;
     let places = (0..lines).flat_map(|x| (0..lines).map(move |z| (share(x), share(z))));
-    let mut found: Vec<Line> = places
+    let mut found: Vec<VerticalLine> = places
         .filter_map(|(x, z)| {
             let place = low + (high - low) * DVec3::new(x, 0.0, z);
             let met = shapes().filter_map(|shape| upwards(shape, place));
-            Some(Line {
+            Some(VerticalLine {
                 x: place.x,
                 z: place.z,
                 low: met.reduce(f64::min)?,
@@ -143,17 +143,21 @@ fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<Line> {
         })
         .collect();
     let points = shapes().filter_map(lowest_point);
-    found.extend(points.min_by(|a, b| a.y.total_cmp(&b.y)).map(|point| Line {
-        x: point.x,
-        z: point.z,
-        low: point.y,
-        high: top(point.x, point.z).unwrap_or(high.y),
-    }));
+    found.extend(
+        points
+            .min_by(|a, b| a.y.total_cmp(&b.y))
+            .map(|point| VerticalLine {
+                x: point.x,
+                z: point.z,
+                low: point.y,
+                high: top(point.x, point.z).unwrap_or(high.y),
+            }),
+    );
     found
 }
 
 /// How high what these objects could stand on is on a line, below their top there.
-fn ground_below(scene: &Scene, body: &[usize], line: &Line) -> Option<f64> {
+fn ground_below(scene: &Scene, body: &[usize], line: &VerticalLine) -> Option<f64> {
     let from = DVec3::new(line.x, line.high, line.z);
     let others = scene.objects.iter().enumerate();
     // Those of a body are in ascending order: a group may have thousands.
@@ -248,8 +252,8 @@ mod tests {
         true
     }
 
-    fn low(scene: &Scene, place: usize) -> f64 {
-        lowest_point(&scene.objects[place].shape)
+    fn low(scene: &Scene, index: usize) -> f64 {
+        lowest_point(&scene.objects[index].shape)
             .expect("it ends")
             .y
     }
@@ -285,8 +289,8 @@ mod tests {
         assert!(put(&mut scene, &[0, 1]));
         assert!(low(&scene, 1).abs() < 1e-9);
         assert!((low(&scene, 0) - 10.0).abs() < 1e-9);
-        for place in [0, 1] {
-            group.objects[place].group = "both".to_owned();
+        for index in [0, 1] {
+            group.objects[index].group = "both".to_owned();
         }
         let above = Object {
             shape: ball(100.0, 7.0, 1.0),

@@ -117,7 +117,7 @@ impl<'u> Rows<'u> {
             ];
             let colors = palette(ui.ctx()).axis_letters;
             let size = before.abs().max_element();
-            for (place, ((axis, part), color)) in parts.into_iter().zip(colors).enumerate() {
+            for (index, ((axis, part), color)) in parts.into_iter().zip(colors).enumerate() {
                 let name = format!("{} {axis}", field.name);
                 let number = Number {
                     field,
@@ -128,7 +128,7 @@ impl<'u> Rows<'u> {
                     axis: Some((axis, color)),
                 };
                 if drag(ui, &number, part) {
-                    chosen = Some(part_of(Some(place)));
+                    chosen = Some(part_of(Some(index)));
                 }
             }
             if let Some(whole) = pasted.get() {
@@ -173,7 +173,7 @@ impl<'u> Rows<'u> {
             let width = (ui.available_width() - HEX - gaps) / 3.0;
             let pasted = Cell::new(None);
             let parts = [&mut value.x, &mut value.y, &mut value.z];
-            for (place, (name, part)) in channels.into_iter().zip(parts).enumerate() {
+            for (index, (name, part)) in channels.into_iter().zip(parts).enumerate() {
                 let own = *part;
                 let number = Number {
                     field: &field,
@@ -184,7 +184,7 @@ impl<'u> Rows<'u> {
                     axis: None,
                 };
                 if drag(ui, &number, part) {
-                    let part = Some(place);
+                    let part = Some(index);
                     chosen = Some(Chosen { field: name, part });
                 }
                 if *part != own {

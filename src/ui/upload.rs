@@ -13,7 +13,7 @@ const MOSTLY: f64 = 0.5;
 
 /// A part of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct PicturePart {
     /// Columns of pixels.
     pub columns: Range<usize>,
     /// Rows of pixels.
@@ -22,12 +22,12 @@ pub struct Part {
 
 /// The parts in which `new` differs from `old`; `None` where it is best sent whole: it has another
 /// size, or has mostly changed.
-pub fn changes(old: &Image, new: &Image) -> Option<Vec<Part>> {
+pub fn changes(old: &Image, new: &Image) -> Option<Vec<PicturePart>> {
     if (old.width, old.height) != (new.width, new.height) {
         return None;
     }
     let most = (new.pixels.len() as f64 * MOSTLY) as usize;
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<PicturePart> = Vec::new();
     let mut changed = 0;
     for top in (0..new.height).step_by(SIDE) {
         let rows = top..(top + SIDE).min(new.height);
@@ -44,7 +44,7 @@ pub fn changes(old: &Image, new: &Image) -> Option<Vec<Part>> {
                 Some(last) if last.rows == rows && last.columns.end == left => {
                     last.columns.end = columns.end;
                 }
-                _ => parts.push(Part {
+                _ => parts.push(PicturePart {
                     columns,
                     rows: rows.clone(),
                 }),
@@ -74,7 +74,7 @@ pub fn whole(image: &Image) -> ColorImage {
 }
 
 /// A part of the picture as the graphics card wants it.
-pub fn piece(image: &Image, part: &Part) -> ColorImage {
+pub fn piece(image: &Image, part: &PicturePart) -> ColorImage {
     let rows = part.rows.clone();
     let pixels = rows.flat_map(|row| {
         let start = row * image.width;
@@ -113,7 +113,7 @@ mod tests {
         for column in 60..70 {
             new.pixels[199 * 300 + column] = [9; 4];
         }
-        let part = Part {
+        let part = PicturePart {
             columns: 0..128,
             rows: 192..200,
         };

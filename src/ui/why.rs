@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::theme::{GRID, ROW, palette};
 use crate::editor::Editor;
-use crate::lab::{Lit, Share, Sight, drawn, explain};
+use crate::lab::{Explanation, LightTerm, ShadingTerms, drawn, explain};
 use crate::scene::{Aspect, Scene, format_number};
 use crate::ui::rows::to_bytes;
 use crate::worker::Background;
@@ -30,8 +30,8 @@ const AWAY: f32 = 60.0;
 pub struct Why {
     /// The ray, from where and where to, and the scene that it was sent into last.
     asked: Option<(DVec3, DVec3, Arc<Scene>)>,
-    answer: Option<Sight>,
-    waiting: Background<Sight>,
+    answer: Option<Explanation>,
+    waiting: Background<Explanation>,
     /// What the picture has there, once it is known.
     drawn: Option<DVec3>,
     /// Who finds that out, which takes longer.
@@ -62,7 +62,7 @@ impl Why {
 
     /// Marks the place that the answer is about, if it is on something; `on_screen` finds it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
-        if let Some(Sight::Surface(lit)) = &self.answer
+        if let Some(Explanation::Surface(lit)) = &self.answer
             && let Some(at) = on_screen(lit.point)
         {
             let colors = palette(painter.ctx());
@@ -141,8 +141,8 @@ fn beside_pointer(ctx: &Context) -> Pos2 {
 }
 
 /// Says so where the picture has something else there.
-fn show_drawn(ui: &mut Ui, sight: &Sight, drawn: Option<DVec3>) {
-    let is_other = |drawn: &DVec3| (drawn - sight.color()).abs().max_element() > SEEN;
+fn show_drawn(ui: &mut Ui, explanation: &Explanation, drawn: Option<DVec3>) {
+    let is_other = |drawn: &DVec3| (drawn - explanation.color()).abs().max_element() > SEEN;
     let Some(drawn) = drawn.filter(is_other) else {
         return;
     };
@@ -151,24 +151,24 @@ fn show_drawn(ui: &mut Ui, sight: &Sight, drawn: Option<DVec3>) {
     ui.weak("The terms are those of exact formulas, and of flat faces: other formulas, single precision or a mesh that is shaded as curved may come to something else.");
 }
 
-fn show(ui: &mut Ui, sight: &Sight, depth: usize) {
-    match sight {
-        Sight::Sky(color) => {
+fn show(ui: &mut Ui, explanation: &Explanation, depth: usize) {
+    match explanation {
+        Explanation::Sky(color) => {
             term(ui, "background: nothing is met", *color);
         }
-        Sight::Marker(light, color) => {
+        Explanation::Marker(light, color) => {
             term(
                 ui,
                 &format!("marker of {light}: its full ambient colour"),
                 *color,
             );
         }
-        Sight::Surface(lit) => show_surface(ui, lit, depth),
+        Explanation::Surface(lit) => show_surface(ui, lit, depth),
     }
 }
 
-fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
-    let color = Sight::Surface(Box::new(lit.clone())).color();
+fn show_surface(ui: &mut Ui, lit: &ShadingTerms, depth: usize) {
+    let color = Explanation::Surface(Box::new(lit.clone())).color();
     ui.horizontal(|ui| {
         swatch(ui, color);
         ui.label(RichText::new(channels(color)).monospace());
@@ -205,8 +205,8 @@ fn show_surface(ui: &mut Ui, lit: &Lit, depth: usize) {
     });
 }
 
-fn show_light(ui: &mut Ui, share: &Share) {
-    let Share {
+fn show_light(ui: &mut Ui, share: &LightTerm) {
+    let LightTerm {
         light,
         intensity,
         cosine,

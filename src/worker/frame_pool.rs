@@ -20,7 +20,7 @@ impl FramePool {
             .handed_out
             .iter()
             .position(|image| Arc::strong_count(image) == 1);
-        let old = free.and_then(|place| Arc::into_inner(self.handed_out.swap_remove(place)));
+        let old = free.and_then(|index| Arc::into_inner(self.handed_out.swap_remove(index)));
         let mut image = old.unwrap_or_default();
         image.resize(width, height);
         image

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 
-use crate::animate::Seen;
+use crate::animate::Landmark;
 use crate::export::Exported;
 use crate::image::{Image, ObjectMap, RenderCost, Thing};
 use crate::lab::{Choice, Goal};
@@ -114,7 +114,7 @@ pub struct QueryJob {
 #[derive(Clone, Debug)]
 pub enum Question {
     /// What every sample of a recorded flight sees, and what is known of that.
-    Survey(Arc<Take>, Vec<Vec<Seen>>),
+    Survey(Arc<Take>, Vec<Vec<Landmark>>),
     /// Which points the camera sees; the number is the asker's.
     Visible(u64, Box<Camera>, Vec<DVec3>),
     /// Which object is seen at each pixel of a picture, as if these were not there; the number is the
@@ -128,7 +128,7 @@ pub enum Question {
 #[derive(Clone, Debug)]
 pub enum Answer {
     /// What the samples of this take see, see [`crate::trace::survey`].
-    Survey(Arc<Take>, Vec<Vec<Seen>>),
+    Survey(Arc<Take>, Vec<Vec<Landmark>>),
     /// For the question of this number: whether nothing stands before each point.
     Visible(u64, Vec<(DVec3, bool)>),
     /// For the question of this number: what is seen at each pixel without these.

@@ -36,7 +36,7 @@ enum JobOutcome {
 }
 
 /// What a thread keeps from one job to the next.
-struct Desk {
+struct KeptState {
     budget: Budget,
     frame_pool: FramePool,
     mapper: ObjectMapper,
@@ -47,7 +47,7 @@ struct Desk {
 
 /// Works until told to quit. A panic in a job becomes an event, and the thread lives on.
 pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
-    let mut desk = Desk {
+    let mut kept = KeptState {
         budget: Budget::new(),
         frame_pool: FramePool::default(),
         mapper: ObjectMapper::default(),
@@ -57,7 +57,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
     let mut woken = Instant::now();
     while let Some((mut job, control)) = next_job(shared, crew) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            threads.run(|| work_on(shared, &mut job, &mut desk, &control))
+            threads.run(|| work_on(shared, &mut job, &mut kept, &control))
         }));
         let panic = match outcome {
             Ok(outcome) => {
@@ -96,7 +96,12 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
 }
 
 /// Does a job, or a piece of it.
-fn work_on(shared: &Shared, job: &mut Job, desk: &mut Desk, control: &RenderControl) -> JobOutcome {
+fn work_on(
+    shared: &Shared,
+    job: &mut Job,
+    kept: &mut KeptState,
+    control: &RenderControl,
+) -> JobOutcome {
     match job {
         Job::Live(job) => {
             let start = Instant::now();
@@ -104,14 +109,14 @@ fn work_on(shared: &Shared, job: &mut Job, desk: &mut Desk, control: &RenderCont
                 shared,
                 job,
                 tracer: Tracer::planned(&job.scene, &job.request, &mut shared.planner()),
-                frame_pool: &mut desk.frame_pool,
+                frame_pool: &mut kept.frame_pool,
             };
-            live.run(control, &mut desk.budget, start);
+            live.run(control, &mut kept.budget, start);
             JobOutcome::Ended
         }
-        Job::Query(job) => answer(shared, job, desk, control),
+        Job::Query(job) => answer(shared, job, kept, control),
         Job::Thumbnail(job) => thumbnail(shared, job),
-        Job::Still(job) => still(shared, job, &mut desk.planner, control),
+        Job::Still(job) => still(shared, job, &mut kept.planner, control),
         Job::Export(_, exporting) => JobOutcome::Export(exporting.step(control)),
         Job::Lab(study) => {
             if study.step(control) {
@@ -218,7 +223,7 @@ fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> boo
 fn answer(
     shared: &Shared,
     job: &mut QueryJob,
-    Desk { mapper, query, .. }: &mut Desk,
+    KeptState { mapper, query, .. }: &mut KeptState,
     control: &RenderControl,
 ) -> JobOutcome {
     let scene = &job.scene;

@@ -33,7 +33,7 @@ const HOMES: &[(&[&str], &[&str])] = &[
             "export/program",
             "plan/grouping",
             "plan/borders",
-            "plan/idle",
+            "plan/culled_faces",
             "plan/packed_mesh",
             "plan/smooth",
             "plan/thickness",

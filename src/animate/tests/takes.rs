@@ -56,14 +56,14 @@ fn tremor(sample: usize, size: f64) -> f64 {
 }
 
 /// What every sample sees: a grid of points 60 ahead.
-fn seen(take: &Take) -> Vec<Vec<Seen>> {
+fn seen(take: &Take) -> Vec<Vec<Landmark>> {
     let of = |sample: usize| {
         let camera = take.camera(sample).expect("a sample");
         let framing = camera.framing().expect("a basis");
         let place = |n: u32| {
             let at = [f64::from(n % 3) * 0.4 - 0.4, f64::from(n / 3) * 0.4 - 0.4];
             let (origin, direction) = framing.ray(at);
-            Seen {
+            Landmark {
                 at,
                 what: origin + direction * 60.0,
                 is_sky: false,

@@ -89,7 +89,7 @@ fn what_stands_before_a_light_is_named() {
     let towards = (ball - lamp).normalize();
     let floor = lamp + towards * (lamp.y / -towards.y);
     let eye = floor + DVec3::new(0.0, 1.0, 0.0);
-    let Sight::Surface(lit) = explain(&scene, eye, DVec3::NEG_Y) else {
+    let Explanation::Surface(lit) = explain(&scene, eye, DVec3::NEG_Y) else {
         panic!("the floor");
     };
     assert_eq!(lit.object, "Plane");
@@ -123,7 +123,7 @@ fn of_what_fills_one_surface_the_first_is_named() {
         let target = along * (place * 0.7 - 10.0) + across * (place * 0.3);
         let origin = DVec3::new(3.0, 170.0, 11.0 + place);
         let direction = (target - origin).normalize();
-        let Sight::Surface(lit) = explain(&scene, origin, direction) else {
+        let Explanation::Surface(lit) = explain(&scene, origin, direction) else {
             panic!("the plane is met");
         };
         assert_eq!(lit.object, "Plane");

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 
 use crate::scene::{Camera, Orientation};
 use crate::simd::Vec3;
@@ -24,7 +24,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let across = || Axis::new("degrees from the pole", &FROM_POLE);
     let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<DVec3>| {
         Map::measure(
-            (Subject::CameraPole, "leans by more than a thousandth"),
+            (MapSubject::CameraPole, "leans by more than a thousandth"),
             (name.to_owned(), is_default),
             (across(), Axis::one("camera")),
             |degrees, _| {
@@ -36,7 +36,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let frames = || Axis::new("frames", &FRAMES);
     let drift = |name: &'static str, is_default, turned: fn(u64) -> DMat3| {
         Map::measure(
-            (Subject::CameraTurns, "is no orthonormal basis any more"),
+            (MapSubject::CameraTurns, "is no orthonormal basis any more"),
             (name.to_owned(), is_default),
             (frames(), Axis::one("camera")),
             |frames, _| Tries::count([is_crooked(&turned(frames as u64))]),

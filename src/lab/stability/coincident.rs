@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::map::{AWAY, Map, Tries, places, scales};
 use super::stage::light;
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::plan::RenderRequest;
 use crate::scene::{
     Camera, ColorPack, List, Object, Plane, Precision, Sampling, Scene, Sphere, Triangle,
@@ -18,7 +18,7 @@ const SIDE: u32 = 48;
 pub fn map() -> Map {
     let seen = |away, scale, later| levels(&scene(away, scale, later));
     Map::measure(
-        (Subject::Coincident, "pixel that shows the later surface"),
+        (MapSubject::Coincident, "pixel that shows the later surface"),
         ("earlier first".to_owned(), true),
         (places(), scales()),
         |away, scale| {

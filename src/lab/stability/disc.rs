@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::primitive::{PackedDisc, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::Vec3;
@@ -21,7 +21,7 @@ pub fn map(effort: u32) -> Map {
     let across = Axis::new("radii away", &DISTANCES);
     Map::measure(
         (
-            Subject::Disc,
+            MapSubject::Disc,
             "hit where it passes by or missed where it does not",
         ),
         ("disc".to_owned(), true),

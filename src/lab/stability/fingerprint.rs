@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::animate::{CameraPath, shot};
 use crate::export::fingerprint;
 use crate::image::{Format, Image, render};
@@ -27,7 +27,10 @@ const SIZE: (u32, u32) = (32, 24);
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("units moved", &MOVES);
     Map::measure(
-        (Subject::Fingerprint, "changed frame that is not made again"),
+        (
+            MapSubject::Fingerprint,
+            "changed frame that is not made again",
+        ),
         ("all that decides it".to_owned(), true),
         (across, Axis::one("")),
         |by, _| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::plan::exponent;
 use crate::scene::{HighlightMethod, Method as _};
 use crate::simd::Vec3;
@@ -21,7 +21,10 @@ pub fn maps(effort: u32) -> Vec<Map> {
         .map(|method| {
             let across = Axis::new("exponent", &EXPONENTS);
             Map::measure(
-                (Subject::Highlight, "off by more than half a level of 255"),
+                (
+                    MapSubject::Highlight,
+                    "off by more than half a level of 255",
+                ),
                 (
                     method.id.to_owned(),
                     method.value == HighlightMethod::default(),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::animate::{CameraPath, motion_between};
 use crate::scene::{Camera, Key, Orientation};
 use crate::simd::Vec3;
@@ -28,7 +28,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let angles = Axis::new("degrees between keys", &ANGLES);
     let method = |name: &'static str, is_default, leaves: fn(&[f64; 4]) -> bool| {
         Map::measure(
-            (Subject::Path, "overshoots a key"),
+            (MapSubject::Path, "overshoots a key"),
             (name.to_owned(), is_default),
             (ratios.clone(), Axis::one("flight")),
             |ratio, _| Tries::count(tries().map(|n| leaves(&stops(n, ratio)))),
@@ -36,7 +36,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     };
     let turn = |name: &'static str, is_default, fails: fn(f64, f64) -> bool| {
         Map::measure(
-            (Subject::Turn, "no direction or a step of twice the mean"),
+            (MapSubject::Turn, "no direction or a step of twice the mean"),
             (name.to_owned(), is_default),
             (angles.clone(), Axis::one("flight")),
             |degrees, _| {

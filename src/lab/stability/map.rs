@@ -4,7 +4,7 @@ use std::iter::Sum;
 
 use glam::DVec3;
 
-use super::subject::Subject;
+use super::subject::MapSubject;
 
 /// Scales of a scene whose size is one.
 const SCALES: [f64; 12] = [
@@ -93,7 +93,7 @@ impl Tries {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// What is tried.
-    pub subject: Subject,
+    pub subject: MapSubject,
     /// The method's word.
     pub method: String,
     /// Whether it is the default.
@@ -112,7 +112,7 @@ impl Map {
     /// Tries a method in every cell: what is tested and what counts as its failure, the method and
     /// whether it is the default, both axes, and the tries at a place on them.
     pub fn measure(
-        (subject, failure): (Subject, &'static str),
+        (subject, failure): (MapSubject, &'static str),
         (method, is_default): (String, bool),
         (across, up): (Axis, Axis),
         mut try_at: impl FnMut(f64, f64) -> Tries,

@@ -36,7 +36,7 @@ mod keys;
 mod fingerprint;
 
 pub use map::{Axis, GOLDEN, Map, Tries, mixed, share};
-pub use subject::Subject;
+pub use subject::MapSubject;
 pub use words::number;
 
 use std::fmt::Write as _;
@@ -97,7 +97,7 @@ pub fn summary(maps: &[Map]) -> String {
 
 /// A line of the file.
 #[derive(Serialize)]
-struct Cell<'a> {
+struct CellRow<'a> {
     subject: &'static str,
     method: &'a str,
     default: bool,
@@ -120,7 +120,7 @@ pub fn cells_csv(maps: &[Map]) -> Result<String, csv::Error> {
     csv_of(maps.iter().flat_map(|map| {
         let width = map.across.values.len();
         let cells = map.cells.iter().enumerate();
-        cells.map(move |(index, cell)| Cell {
+        cells.map(move |(index, cell)| CellRow {
             subject: map.subject.name(),
             method: &map.method,
             default: map.is_default,
@@ -194,20 +194,20 @@ mod tests {
 
     /// Nothing fails, but where it is known that some tries may.
     fn assert_holds(map: &Map) {
-        for (place, cell) in map.cells.iter().enumerate() {
-            let at = map.across.values[place % map.across.values.len()];
+        for (index, cell) in map.cells.iter().enumerate() {
+            let at = map.across.values[index % map.across.values.len()];
             let allowed = match map.subject {
                 // At a million radii the sphere formula fails for about one ray in a million; the plan does not
                 // use single precision beyond 5,000.
-                Subject::Sphere if at > 1e5 => 1e-4,
+                MapSubject::Sphere if at > 1e5 => 1e-4,
                 // Samples in a pixel that is halved as often as can be are a sixteenth of it apart.
-                Subject::Thin if at < 0.2 => 0.25,
+                MapSubject::Thin if at < 0.2 => 0.25,
                 _ => 0.0,
             };
             let (name, rate) = (map.subject.name(), cell.rate());
             assert!(
                 rate <= allowed || cell.tries == 0,
-                "{name}: {rate:e} in cell {place}"
+                "{name}: {rate:e} in cell {index}"
             );
         }
     }
@@ -220,8 +220,8 @@ mod tests {
         let map = map.expect("a map");
         let column = map.across.values.iter().position(|&value| value == x);
         let row = map.up.values.iter().position(|&value| value == y);
-        let place = row.expect("a row") * map.across.values.len() + column.expect("a column");
-        map.cells[place].rate()
+        let index = row.expect("a row") * map.across.values.len() + column.expect("a column");
+        map.cells[index].rate()
     }
 
     #[test]

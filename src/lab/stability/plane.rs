@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::primitive::{PackedPlane, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::{Real as _, Vec3};
@@ -18,7 +18,10 @@ const TRIES: u64 = 200;
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("degrees", &ANGLES);
     Map::measure(
-        (Subject::Plane, "distance off by more than 16u / sin(angle)"),
+        (
+            MapSubject::Plane,
+            "distance off by more than 16u / sin(angle)",
+        ),
         ("plane".to_owned(), true),
         (across, scales()),
         |angle, scale| {

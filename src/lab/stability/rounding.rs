@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::map::{Axis, Map, Tries};
 use super::stage::light;
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::mesh::SOLIDS;
 use crate::plan::RenderRequest;
 use crate::scene::{
@@ -24,7 +24,7 @@ const STEP: f32 = 1.0 / 255.0;
 pub fn maps() -> Vec<Map> {
     let map = |precision: Precision| {
         Map::measure(
-            (Subject::Rounding, "pixel other than in double precision"),
+            (MapSubject::Rounding, "pixel other than in double precision"),
             (precision.id(), precision == Precision::default()),
             (bounces(), distances()),
             |bounces, away| {

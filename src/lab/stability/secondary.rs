@@ -3,7 +3,7 @@
 
 use super::map::{AWAY, Map, Tries, places, scales};
 use super::stage::light;
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::plan::{Model, RenderRequest};
 use crate::scene::{
     Camera, ColorPack, Light, List, Method as _, Methods, Object, Plane, Precision, RayOffset,
@@ -29,15 +29,18 @@ enum BallKind {
 /// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are
 /// lit (leak). Pixels beside an edge of a shadow or of a thing are not tried.
 pub fn maps() -> Vec<Map> {
-    let mut maps = maps_of(BallKind::Sphere, [Subject::ShadowAcne, Subject::ShadowLeak]);
+    let mut maps = maps_of(
+        BallKind::Sphere,
+        [MapSubject::ShadowAcne, MapSubject::ShadowLeak],
+    );
     maps.extend(maps_of(
         BallKind::Mesh,
-        [Subject::MeshAcne, Subject::MeshLeak],
+        [MapSubject::MeshAcne, MapSubject::MeshLeak],
     ));
     maps
 }
 
-fn maps_of(ball: BallKind, [acne, leak]: [Subject; 2]) -> Vec<Map> {
+fn maps_of(ball: BallKind, [acne, leak]: [MapSubject; 2]) -> Vec<Map> {
     let at_home = scene(ball, 0.0, 1.0);
     let double = |offset| lit(&at_home, (offset, Precision::Double), Model::Needed);
     let (truth, facing) = (double(RayOffset::Robust), double(RayOffset::Fixed(BEYOND)));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scales, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::primitive::{PackedSphere, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, SphereMethod};
 use crate::simd::Vec3;
@@ -22,7 +22,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             let across = Axis::new("radii away", &DISTANCES);
             Map::measure(
                 (
-                    Subject::Sphere,
+                    MapSubject::Sphere,
                     "hit where it passes by or missed where it does not",
                 ),
                 (

@@ -7,7 +7,7 @@ use crate::scene::{Method as _, Orientation, Render, Scene, Shape};
 
 /// What a map is about: the setting that it tests, and where on it a scene stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
+pub enum MapSubject {
     /// Rays past spheres.
     Sphere,
     /// Rays at the edges of triangles.
@@ -46,7 +46,7 @@ pub enum Subject {
     Fingerprint,
 }
 
-impl Subject {
+impl MapSubject {
     /// What it is called.
     pub fn name(self) -> &'static str {
         match self {

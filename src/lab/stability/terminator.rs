@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::mesh::Triangles;
 use crate::plan::PackedMesh;
 use crate::primitive::{Curved, PackedTriangle, Primitive as _, Ray, SurfacePoint};
@@ -35,7 +35,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         };
         let up = Axis::new("degrees of light", &HEIGHTS);
         Map::measure(
-            (Subject::Terminator, "lit point that is dark"),
+            (MapSubject::Terminator, "lit point that is dark"),
             (method.to_owned(), is_lifted),
             (across, up),
             |faces, height| {

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
 use super::stage::light;
-use super::subject::Subject;
+use super::subject::MapSubject;
 use crate::plan::RenderRequest;
 use crate::scene::{Camera, ColorPack, List, Method as _, Object, Sampling, Scene, Triangle};
 
@@ -40,7 +40,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let mut maps: Vec<Map> = SAMPLINGS
         .iter()
         .map(|sampling| Map {
-            subject: Subject::Thin,
+            subject: MapSubject::Thin,
             method: sampling.id(),
             is_default: *sampling == Sampling::default(),
             failure: "pixel that shows nothing of it",

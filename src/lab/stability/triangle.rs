@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::map::{AWAY, Map, Tries, places, scales, scattered};
-use super::subject::Subject;
-use crate::primitive::{PackedTriangle, Primitive as _, Ray, Spared, Tip};
+use super::subject::MapSubject;
+use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Tip};
 use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;
 
@@ -21,7 +21,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         .map(|method| {
             Map::measure(
                 (
-                    Subject::Triangle,
+                    MapSubject::Triangle,
                     "ray from inside a closed mesh that meets nothing",
                 ),
                 (
@@ -79,7 +79,7 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
         in_mesh: true,
         thickness: 1.0,
         tip: Tip::Nowhere,
-        spared: Spared::Lit,
+        culling: Culling::Lit,
         longest: 1.0,
         material: 0,
     }

@@ -82,8 +82,8 @@ fn percent(rate: f64) -> String {
 fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);
@@ -94,11 +94,11 @@ fn grouped(count: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::stability::Subject;
+    use crate::lab::stability::MapSubject;
 
     fn map(failures: [u64; 4]) -> Map {
         Map {
-            subject: Subject::Sphere,
+            subject: MapSubject::Sphere,
             method: String::new(),
             is_default: false,
             failure: "",

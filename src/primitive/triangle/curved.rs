@@ -58,11 +58,11 @@ impl<L: SimdFloat> Curved<L> {
         let weights = weights(self.corners, flat.normal, flat.point);
         let mut normal = Vec3::splat(zero);
         let mut lift = normal;
-        for (place, weight) in weights.into_iter().enumerate() {
-            let own = self.normals[place];
+        for (index, weight) in weights.into_iter().enumerate() {
+            let own = self.normals[index];
             let own = Vec3::select(is_away, -own, own);
             // Onto the plane of the corner where that is above: a surface that is bent inwards stays flat.
-            let below = (flat.point - self.corners[place]).dot(own).min(zero);
+            let below = (flat.point - self.corners[index]).dot(own).min(zero);
             normal = normal + own * weight;
             lift = lift - own * (below * weight);
         }

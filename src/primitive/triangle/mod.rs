@@ -13,7 +13,9 @@ mod in_doubt;
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::WHOLE;
-pub use packed::{PackedTriangle, Spared, Tip, Which, corner, count_corner_users, number_corners};
+pub use packed::{
+    Culling, PackedTriangle, Tip, Vertex, corner, count_corner_users, number_corners,
+};
 use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
@@ -78,20 +80,17 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
         let Triangle { a, b, c } = *description;
         let normal = (c - a).cross(b - a).try_normalize()?;
-        let is_shared = |point: &DVec3| {
-            let users = packing.corner_users.get(&corner(*point));
-            users.is_some_and(|users| *users > 1)
-        };
+        let is_shared = |point: &DVec3| packing.corner_users.get(&corner(*point)) > Some(&1);
         Some(Self {
             corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
             tip: Tip::Narrow,
-            spared: if packing.faces_of_solids.contains(&[a, b, c].map(corner)) {
-                Spared::Far
+            culling: if packing.faces_of_solids.contains(&[a, b, c].map(corner)) {
+                Culling::Far
             } else {
-                Spared::Nothing
+                Culling::Nothing
             },
             longest: R::from_f64(description.longest_side()),
             material,
@@ -129,8 +128,8 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     #[inline(always)]
     fn is_far<L: SimdFloat<Real = R>>(&self, sight: Vec3<L>) -> Option<L::Mask> {
         let zero = sight.x.like(R::ZERO);
-        match self.spared {
-            Spared::Far => Some(zero.less(sight.dot(sight.like(self.normal)))),
+        match self.culling {
+            Culling::Far => Some(zero.less(sight.dot(sight.like(self.normal)))),
             _ => None,
         }
     }
@@ -143,10 +142,10 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
         let thickness = zero.like(self.thickness);
-        let is_left = match self.spared {
-            Spared::Nothing => return thickness,
-            Spared::Lit => zero.less(directions.dot(directions.like(self.normal))),
-            Spared::Far => directions.dot(directions.like(self.normal)).less(zero),
+        let is_left = match self.culling {
+            Culling::Nothing => return thickness,
+            Culling::Lit => zero.less(directions.dot(directions.like(self.normal))),
+            Culling::Far => directions.dot(directions.like(self.normal)).less(zero),
         };
         L::select(is_left, zero, thickness)
     }

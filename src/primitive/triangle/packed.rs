@@ -11,7 +11,7 @@ use crate::simd::{Real, Vec3};
 
 /// What a face of a solid may be left out of, where the others hide and shade the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spared {
+pub enum Culling {
     /// Nothing.
     Nothing,
     /// What casts shadows from lights that it is turned to.
@@ -28,12 +28,12 @@ pub enum Tip {
     /// Wherever it is narrow itself.
     Narrow,
     /// Around this corner, which many faces share: what they surround is so many 64ths as wide as it is far from there.
-    Round(Which, u8),
+    Round(Vertex, u8),
 }
 
 impl Tip {
     /// [`Self::Round`] for something so many times as wide as it is far from the corner.
-    pub fn round(which: Which, share: f64) -> Self {
+    pub fn round(which: Vertex, share: f64) -> Self {
         // One that is nothing would be thin all along.
         let share = (share * WHOLE).ceil().clamp(1.0, f64::from(u8::MAX));
         Self::Round(which, share as u8)
@@ -45,7 +45,7 @@ pub const WHOLE: f64 = 64.0;
 
 /// One of the corners of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum Vertex {
     /// The first one.
     A,
     /// The second one.
@@ -54,7 +54,7 @@ pub enum Which {
     C,
 }
 
-impl Which {
+impl Vertex {
     /// All, in order.
     pub const ALL: [Self; 3] = [Self::A, Self::B, Self::C];
 }
@@ -74,7 +74,7 @@ pub struct PackedTriangle<R> {
     /// Where it may slip between samples.
     pub tip: Tip,
     /// What it may be left out of.
-    pub spared: Spared,
+    pub culling: Culling,
     /// The length of its longest edge.
     pub longest: R,
     /// Index of its material.
@@ -93,7 +93,7 @@ impl<R: Real> PackedTriangle<R> {
             in_mesh: true,
             thickness: R::from_f64(triangle.thickness()),
             tip: Tip::Nowhere,
-            spared: Spared::Lit,
+            culling: Culling::Lit,
             longest: R::from_f64(triangle.longest_side()),
             material: 0,
         })
@@ -107,7 +107,7 @@ impl<R: Real> PackedTriangle<R> {
             in_mesh: self.in_mesh,
             thickness: S::from_f64(self.thickness.to_f64()),
             tip: self.tip,
-            spared: self.spared,
+            culling: self.culling,
             longest: S::from_f64(self.longest.to_f64()),
             material: self.material,
         }
@@ -118,8 +118,8 @@ impl<R: Real> PackedTriangle<R> {
         self.corners.swap(1, 2);
         self.normal = -self.normal;
         self.tip = match self.tip {
-            Tip::Round(Which::B, share) => Tip::Round(Which::C, share),
-            Tip::Round(Which::C, share) => Tip::Round(Which::B, share),
+            Tip::Round(Vertex::B, share) => Tip::Round(Vertex::C, share),
+            Tip::Round(Vertex::C, share) => Tip::Round(Vertex::B, share),
             tip => tip,
         };
     }

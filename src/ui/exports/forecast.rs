@@ -43,7 +43,7 @@ struct Missing {
 
 /// What was measured on the picture on screen, and on a frame.
 #[derive(Default)]
-struct Sample {
+struct Speed {
     /// Bytes of a PNG for each of a PPM.
     png_share: Option<f64>,
     /// Seconds that a frame takes.
@@ -61,8 +61,8 @@ pub struct Forecast {
     found: Option<Result<Missing, String>>,
     /// Which picture is measured: its revision and width; and for which export.
     subject: Option<(u64, usize, Settings)>,
-    measuring: Background<Sample>,
-    sample: Sample,
+    measuring: Background<Speed>,
+    sample: Speed,
 }
 
 impl Forecast {
@@ -131,7 +131,7 @@ impl Forecast {
             self.subject = Some(subject);
             let (image, video) = (Arc::clone(&frame.image), settings.video);
             let sequence = sequence.clone();
-            let measure = move || Sample::of(&image, &sequence, video);
+            let measure = move || Speed::of(&image, &sequence, video);
             self.measuring = Background::start("glint-sample", measure);
         }
     }
@@ -215,7 +215,7 @@ impl Missing {
     }
 }
 
-impl Sample {
+impl Speed {
     /// Of an export whose frames are like an image.
     fn of(image: &Image, sequence: &Sequence, video: Option<Video>) -> Self {
         let pixels = image.pixels.len().max(1) as f64;

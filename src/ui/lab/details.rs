@@ -47,7 +47,7 @@ impl Lab {
         ui.set_width(DETAILS - GRID);
         let chosen = self
             .chosen
-            .and_then(|place| self.study.as_ref()?.measurements.get(place));
+            .and_then(|index| self.study.as_ref()?.measurements.get(index));
         let Some(dot) = chosen else {
             if !dots.is_empty() {
                 ui.weak("Click a dot to look at its picture.");
@@ -59,7 +59,7 @@ impl Lab {
         let study = self.study.as_deref();
         let account = study
             .zip(self.chosen)
-            .map(|(study, place)| account(study, place));
+            .map(|(study, index)| account(study, index));
         ui.horizontal_wrapped(|ui| {
             for (face, name, hint) in FACES {
                 ui.selectable_value(&mut self.face, face, name).hint(hint);
@@ -87,13 +87,13 @@ impl Lab {
             ui.weak("One dot with");
             ui.horizontal_wrapped(|ui| {
                 let chosen = self.chosen;
-                let others = equals.iter().filter(|(place, _)| Some(*place) != chosen);
-                for (number, (place, name)) in others.enumerate() {
+                let others = equals.iter().filter(|(index, _)| Some(*index) != chosen);
+                for (number, (index, name)) in others.enumerate() {
                     if number > 0 {
                         ui.weak("·");
                     }
                     if ui.link(name).clicked() {
-                        self.chosen = Some(*place);
+                        self.chosen = Some(*index);
                     }
                 }
             });
@@ -106,7 +106,7 @@ impl Lab {
             return Vec::new();
         };
         let dot = dots.iter().find(|dot| dot.contains(&chosen));
-        let name = |&place: &usize| (place, study.measurements[place].candidate.name.clone());
+        let name = |&index: &usize| (index, study.measurements[index].candidate.name.clone());
         dot.into_iter().flatten().map(name).collect()
     }
 }

@@ -85,7 +85,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
         .zip(clusters)
         .filter(|(spot, _)| spot.error.is_finite())
         .unzip();
-    let spot_of = |place: usize| clusters.iter().position(|members| members.contains(&place));
+    let spot_of = |index: usize| clusters.iter().position(|members| members.contains(&index));
     let (width, height) = study.size();
     let is_rmse = view.axes.1 == ErrorAxis::Rmse;
     let truth = study.reference.as_ref().filter(|_| is_rmse);
@@ -156,7 +156,7 @@ fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<us
                         == study.scene().render.reflection_limit
                     && is_in(dot.candidate.render.antialias)
             })
-            .filter_map(|(place, dot)| Some((dot.rays_per_pixel, spot_of(place)?)))
+            .filter_map(|(index, dot)| Some((dot.rays_per_pixel, spot_of(index)?)))
             .collect();
         steps.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut spots: Vec<usize> = steps.into_iter().map(|(_, spot)| spot).collect();

@@ -156,7 +156,7 @@ fn describe(map: &Map, index: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lab::stability::{Subject, Tries};
+    use crate::lab::stability::{MapSubject, Tries};
 
     #[test]
     fn a_scene_stands_at_the_nearest_mark() {
@@ -167,7 +167,7 @@ mod tests {
         let places = [0.0, 0.1, 0.9, 4.0, 31.0, 33.0, 1e9].map(|value| nearest(&axis, value));
         assert_eq!(places, [0, 0, 1, 2, 2, 3, 3]);
         let only = |index: usize| Map {
-            subject: Subject::Sphere,
+            subject: MapSubject::Sphere,
             method: String::new(),
             is_default: true,
             failure: "",

@@ -11,8 +11,8 @@ pub const RADIUS: f32 = 4.5;
 /// The colour of a family's marks.
 pub fn color(ui: &Ui, family: Family) -> Color32 {
     let colors = palette(ui.ctx()).families;
-    let place = Family::ALL.iter().position(|(other, _)| *other == family);
-    colors[place.unwrap_or(0)]
+    let index = Family::ALL.iter().position(|(other, _)| *other == family);
+    colors[index.unwrap_or(0)]
 }
 
 /// Draws a mark: filled, or an outline where it is doubtful.

@@ -182,8 +182,8 @@ impl Lab {
 
     /// What the status line says about the dot that is looked at, if one is.
     pub fn describe(&self) -> Option<String> {
-        let place = self.chosen?;
-        let dot = self.study.as_ref()?.measurements.get(place)?;
+        let index = self.chosen?;
+        let dot = self.study.as_ref()?.measurements.get(index)?;
         let image = dot.picture.as_ref()?;
         let (name, words) = (&dot.candidate.name, dot.candidate.words());
         Some(format!(
@@ -198,7 +198,7 @@ impl Lab {
             return "Lab: the reference".to_owned();
         }
         let measured = self.study.as_ref().map(|study| &study.measurements);
-        let dot = self.chosen.and_then(|place| measured?.get(place));
+        let dot = self.chosen.and_then(|index| measured?.get(index));
         dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
     }
 

@@ -58,15 +58,14 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
         chart.bounds = bounds;
         chart.is_one_of_several = studies.len() > 1;
     }
-    let columns = (charts.len() as f64).sqrt().ceil().max(1.0) as usize;
-    let rows = charts.len().div_ceil(columns).max(1);
+    let (columns, rows) = PictureLook::grid_of(charts.len());
     picture(look, |ui| {
         if studies.len() > 1 {
             show_common(ui, &charts);
         }
         let room = ui.available_size();
         let tile = vec2(room.x / columns as f32 - GRID, room.y / rows as f32 - GRID);
-        for row in charts.chunks(columns) {
+        for row in charts.chunks(columns as usize) {
             ui.horizontal_top(|ui| {
                 for chart in row {
                     ui.push_id(&chart.title, |ui| {

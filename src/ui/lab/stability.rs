@@ -113,19 +113,19 @@ impl Stability {
     }
 
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {
-        for (place, map) in self.maps.iter().enumerate() {
+        for (index, map) in self.maps.iter().enumerate() {
             let used = if self.is_used(scene, map) { "●" } else { " " };
             let text = format!("{used} {}: {}", map.subject.name(), map.method);
             let share = format!("{:.3} %", map.total().rate() * 100.0);
             // The sign of what is used is in no other font.
             let words = RichText::new(&text).monospace();
-            let row = Button::selectable(place == self.chosen, words)
+            let row = Button::selectable(index == self.chosen, words)
                 .truncate()
                 .right_text(RichText::new(&share).monospace())
                 .min_size(vec2(ui.available_width(), ROW));
             let row = ui.add(row).accessible_name(format!("{text} {share}"));
             if row.hint(headline(map)).clicked() {
-                self.chosen = place;
+                self.chosen = index;
             }
         }
     }

@@ -6,7 +6,7 @@ use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
 use crate::editor::{Arrangement, Edit, Editor, Item, Kind, Selection};
-use crate::ui::dress::dressed;
+use crate::ui::pack_drag::dressed;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 

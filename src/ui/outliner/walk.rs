@@ -155,7 +155,7 @@ impl Listed<'_> {
         let is_member = |row| matches!(self.lines.get(row), Some(Line::Entry(_, true)));
         let entries = |row| match self.lines.get(row) {
             Some(Line::Entry(item, _)) => vec![item],
-            Some(Line::Group(place)) if !is_member(row + 1) => self.groups[place].items().collect(),
+            Some(Line::Group(index)) if !is_member(row + 1) => self.groups[index].items().collect(),
             _ => Vec::new(),
         };
         let rows = one.min(other)..=one.max(other);
@@ -164,7 +164,7 @@ impl Listed<'_> {
 
     fn row_of_group(&self, name: &str) -> Option<usize> {
         (0..self.lines.len()).find(|row| match self.lines.get(*row) {
-            Some(Line::Group(place)) => self.groups[place].name == name,
+            Some(Line::Group(index)) => self.groups[index].name == name,
             _ => false,
         })
     }
@@ -174,7 +174,7 @@ impl Listed<'_> {
         Some(match self.lines.get(row)? {
             Line::Single(selection, ..) => selection.clone(),
             Line::Entry(item, _) => Selection::all([item]),
-            Line::Group(place) => Selection::all(self.groups[place].items()),
+            Line::Group(index) => Selection::all(self.groups[index].items()),
             Line::Kind(..) => return None,
         })
     }

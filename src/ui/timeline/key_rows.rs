@@ -23,7 +23,7 @@ const FEW: usize = 64;
 /// What the pointer does to the rows from when it is pressed to when it is let go.
 #[derive(Default)]
 pub struct KeyRows {
-    drag: Option<Drag>,
+    drag: Option<KeyDrag>,
     frame: Option<Marquee>,
 }
 
@@ -40,7 +40,7 @@ struct Marquee {
 }
 
 /// Keys on their way.
-struct Drag {
+struct KeyDrag {
     /// The animation before.
     before: Arc<Animation>,
     /// Where they were in it.
@@ -50,7 +50,7 @@ struct Drag {
     are_copies: bool,
 }
 
-impl Drag {
+impl KeyDrag {
     /// What is said where they have replaced others, now that they are let go.
     fn told(&self, now: &Animation) -> Option<String> {
         let copies = if self.are_copies {
@@ -242,7 +242,7 @@ impl KeyRows {
             let places = held(selected, place);
             // What was done before is none of it, and stays where it is taken back.
             out.actions.push(Action::BeginGesture);
-            self.drag = Some(Drag {
+            self.drag = Some(KeyDrag {
                 before: Arc::clone(&editor.scene().animation),
                 places,
                 from: time,

@@ -46,9 +46,9 @@ impl Thumbs {
                 self.shot = Some(texture);
                 continue;
             }
-            let place = name as usize;
-            let own = self.keys.get_mut(place);
-            if let Some(own) = own.filter(|_| place.is_multiple_of(self.stride)) {
+            let index = name as usize;
+            let own = self.keys.get_mut(index);
+            if let Some(own) = own.filter(|_| index.is_multiple_of(self.stride)) {
                 *own = Some(texture);
             }
         }
@@ -107,8 +107,8 @@ impl Thumbs {
                 self.stride = stride;
             }
             self.keys.resize(keys.len(), None);
-            let sketch = |(place, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
-                name: place as u64,
+            let sketch = |(index, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
+                name: index as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),
                 size: pixels(THUMB),
             };

@@ -7,8 +7,8 @@ use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
 use super::navigate::{panned, turn};
 use super::screen::Screen;
-use super::sight::{Sight, ends, item_of};
-use super::subject::Subject;
+use super::seen_objects::{SeenObjects, ends, item_of};
+use super::subject::Movable;
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
 use crate::scene::Shape;
@@ -51,9 +51,9 @@ pub struct View<'a> {
 impl View<'_> {
     /// The point of the scene at a place of the picture; where nothing is, one as far away as the scene's
     /// middle.
-    pub fn point_at(&self, sight: &Sight, at: Pos2) -> DVec3 {
+    pub fn point_at(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
         let scene = self.editor.shown();
-        let seen = sight.at(self.editor, self.place.rect, at);
+        let seen = seen_objects.at(self.editor, self.place.rect, at);
         let shape = match seen {
             Some(Thing::Object(index)) => scene.objects.get(index).map(|object| &object.shape),
             _ => None,
@@ -73,20 +73,20 @@ impl View<'_> {
 
     /// What the camera is moved around: the middle of what is selected, if that is in the picture, or the
     /// point at a place of it.
-    fn pivot(&self, sight: &Sight, at: Pos2) -> DVec3 {
+    fn pivot(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
         let (selection, scene) = (self.editor.selection(), self.editor.shown());
-        let mut selected = Subject::of(selection, scene).into_iter();
+        let mut selected = Movable::of(selection, scene).into_iter();
         let has_end = selected.all(|subject| subject.bounds().is_some());
         let middle = selection.middle(scene).filter(|middle| {
             let place = self.screen.place(*middle);
             has_end && place.is_some_and(|place| self.place.rect.contains(place))
         });
-        middle.unwrap_or_else(|| self.point_at(sight, at))
+        middle.unwrap_or_else(|| self.point_at(seen_objects, at))
     }
 
     /// What is seen at a place, if it is a body that can be taken hold of.
-    fn body_at(&self, sight: &Sight, at: Pos2) -> Option<Thing> {
-        let seen = sight.at(self.editor, self.place.rect, at)?;
+    fn body_at(&self, seen_objects: &SeenObjects, at: Pos2) -> Option<Thing> {
+        let seen = seen_objects.at(self.editor, self.place.rect, at)?;
         // What the eye is in surrounds it on all sides, as the sky does.
         let eye = self.editor.shown().camera.position;
         let surrounds = match seen {
@@ -104,39 +104,39 @@ impl Drag {
     /// What a drag from a place of the picture is of, where this handle is.
     pub fn start(
         view: &View,
-        sight: &Sight,
+        seen_objects: &SeenObjects,
         (at, handle, is_shifted): (Pos2, Option<Handle>, bool),
         out: &mut UiRequests,
     ) -> Option<Self> {
         let editor = view.editor;
         if let Some(handle) = handle {
-            let before = Subject::of(editor.selection(), editor.shown());
+            let before = Movable::of(editor.selection(), editor.shown());
             let held = (before, editor.selection().pivot(editor.shown())?);
             let grip = Grip::new(&view.screen, held, handle, at)?;
             return Some(Self::Grip(Box::new(grip)));
         }
         if editor.looks_through() || editor.timeline().is_playing {
-            return Some(Self::Orbit(view.pivot(sight, at)));
+            return Some(Self::Orbit(view.pivot(seen_objects, at)));
         }
-        if sight.map(editor).is_none() {
+        if seen_objects.map(editor).is_none() {
             return Some(Self::Undecided(at, is_shifted));
         }
-        if let Some(body) = view.body_at(sight, at) {
+        if let Some(body) = view.body_at(seen_objects, at) {
             let item = item_of(body);
             let mut selected = editor.selection().clone();
             if !selected.has(item) {
                 selected = selected.picked(editor.scene(), &[item]);
                 out.actions.push(Action::Select(selected.clone()));
             }
-            let before = Subject::of(&selected, editor.shown());
+            let before = Movable::of(&selected, editor.shown());
             let held = (before, selected.pivot(editor.shown())?);
-            let grip = Grip::body(held, at, view.point_at(sight, at));
+            let grip = Grip::body(held, at, view.point_at(seen_objects, at));
             return Some(Self::Grip(Box::new(grip)));
         }
         Some(if is_shifted {
             Self::Frame(at, editor.selection().clone())
         } else {
-            Self::Orbit(view.pivot(sight, at))
+            Self::Orbit(view.pivot(seen_objects, at))
         })
     }
 
@@ -153,7 +153,7 @@ impl Drag {
         &mut self,
         ui: &Ui,
         view: &View,
-        sight: &Sight,
+        seen_objects: &SeenObjects,
         response: &Response,
         out: &mut UiRequests,
     ) -> bool {
@@ -168,8 +168,8 @@ impl Drag {
             return ui.input(|input| input.pointer.any_down());
         };
         if let Self::Undecided(from, is_shifted) = *self {
-            if sight.map(view.editor).is_some() {
-                match Self::start(view, sight, (from, None, is_shifted), out) {
+            if seen_objects.map(view.editor).is_some() {
+                match Self::start(view, seen_objects, (from, None, is_shifted), out) {
                     Some(drag) => *self = drag,
                     None => return false,
                 }
@@ -188,7 +188,7 @@ impl Drag {
             Self::Orbit(_) | Self::Pan(_) | Self::Undecided(..) => {}
             Self::Frame(from, before) => {
                 let part = Rect::from_two_pos(*from, at);
-                let found = sight.within(view.editor, view.place.rect, part);
+                let found = seen_objects.within(view.editor, view.place.rect, part);
                 // Groups as with a click: others would be torn apart by what is done next.
                 let found = before.picked(view.editor.scene(), &found);
                 let found = found.items();

@@ -7,7 +7,7 @@ use egui::{Color32, FontId, Painter, Pos2, Stroke, StrokeKind, TextStyle, vec2};
 use glam::DVec3;
 
 use super::screen::Screen;
-use super::subject::Subject;
+use super::subject::Movable;
 use crate::editor::{Editor, Selection};
 use crate::scene::{Scene, Shape};
 use crate::ui::theme::{GRID, palette};
@@ -144,7 +144,7 @@ fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     // Of many, nothing is copied: this is done in every frame.
     let only = selected
         .only_placed()
-        .and_then(|item| Subject::new(scene, item));
+        .and_then(|item| Movable::new(scene, item));
     let Some(place) = screen.place(middle) else {
         return Vec::new();
     };
@@ -204,19 +204,19 @@ fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
 }
 
 /// Whether a single thing has a size that is no radius.
-fn has_size(subject: &Subject) -> bool {
+fn has_size(subject: &Movable) -> bool {
     matches!(subject.shape(), Some(Shape::Mesh(_) | Shape::Triangle(_)))
 }
 
 /// Whether there is something to turn about the middle of a single thing; several are turned around each other.
-fn is_mesh(subject: &Subject) -> bool {
+fn is_mesh(subject: &Movable) -> bool {
     matches!(subject.shape(), Some(Shape::Mesh(_)))
 }
 
 /// The handles that only this kind of thing has.
 fn own_handles(
     screen: &Screen,
-    subject: &Subject,
+    subject: &Movable,
     length: f64,
     add: &mut impl FnMut(Handle, Option<Vec<Pos2>>),
 ) {
@@ -225,12 +225,12 @@ fn own_handles(
         Some(vec![screen.place(from)?, screen.place(tip)?])
     };
     match subject {
-        Subject::Light(_, light) => {
+        Movable::Light(_, light) => {
             let radius = light.marker.as_ref().map(|marker| marker.radius);
             let line = radius.map(|radius| rim(screen, light.position, radius));
             add(Handle::Radius, line);
         }
-        Subject::Object(_, object) => match &object.shape {
+        Movable::Object(_, object) => match &object.shape {
             Shape::Sphere(ball) => {
                 add(Handle::Radius, Some(rim(screen, ball.center, ball.radius)));
             }

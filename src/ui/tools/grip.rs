@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::gizmo::{AXES, Handle, LENGTH, RING, label};
 use super::screen::Screen;
-use super::subject::{Subject, together};
+use super::subject::{Movable, together};
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
 use crate::ui::number::read_number;
@@ -22,7 +22,7 @@ const STILL: f64 = 1e-9;
 pub struct Grip {
     handle: Handle,
     /// Everything as it was.
-    before: Vec<Subject>,
+    before: Vec<Movable>,
     /// What it is turned about.
     middle: DVec3,
     /// Where it was grabbed: on the screen, and in the scene.
@@ -48,7 +48,7 @@ impl Grip {
     /// Grabs a handle of these things, which are turned about this point, at a place on the screen.
     pub fn new(
         screen: &Screen,
-        (before, middle): (Vec<Subject>, DVec3),
+        (before, middle): (Vec<Movable>, DVec3),
         handle: Handle,
         at: Pos2,
     ) -> Option<Self> {
@@ -65,7 +65,7 @@ impl Grip {
     }
 
     /// Takes hold of these things, which are turned about this point, where one of them was pointed at.
-    pub fn body((before, middle): (Vec<Subject>, DVec3), at: Pos2, point: DVec3) -> Self {
+    pub fn body((before, middle): (Vec<Movable>, DVec3), at: Pos2, point: DVec3) -> Self {
         Self {
             handle: Handle::Free,
             before,
@@ -350,7 +350,7 @@ mod tests {
     #[test]
     fn a_size_that_is_typed_is_above_0() {
         let scene = Scene::demo();
-        let ball = Subject::new(&scene, Item::object(0)).expect("a ball");
+        let ball = Movable::new(&scene, Item::object(0)).expect("a ball");
         let mut grip = Grip {
             handle: Handle::Radius,
             before: vec![ball],
@@ -378,7 +378,7 @@ mod tests {
         let screen = Screen::new(&scene.camera, view).expect("a view");
         let both = Selection::all([Item::object(0), Item::object(1)]);
         let centre = both.middle(&scene).expect("a middle");
-        let (both, middle) = (Subject::of(&both, &scene), screen.place(centre));
+        let (both, middle) = (Movable::of(&both, &scene), screen.place(centre));
         // It circles as a clock does, seen from where the axis comes from.
         let at = |degrees: f32| {
             let angle = -degrees.to_radians();

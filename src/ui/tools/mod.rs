@@ -4,7 +4,7 @@ mod screen;
 
 mod outline;
 
-mod sight;
+mod seen_objects;
 
 mod navigate;
 
@@ -25,11 +25,11 @@ use glam::DVec3;
 use self::drag::{Drag, View};
 use self::gizmo::{Handle, handle_at};
 use self::navigate::{along, dollied, projected};
-use self::sight::{Sight, ends, item_of, pixel, question};
-use self::subject::Subject;
+use self::seen_objects::{SeenObjects, ends, item_of, pixel, question};
+use self::subject::Movable;
 use super::commands::Command;
-use super::dress::{dressed, dropped_pack};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
+use super::pack_drag::{dressed, dropped_pack};
 use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
@@ -51,7 +51,7 @@ const SAME_PLACE: f32 = 4.0;
 /// What the tools remember between frames.
 #[derive(Default)]
 pub struct Tools {
-    sight: Sight,
+    seen_objects: SeenObjects,
     drag: Option<Drag>,
     /// Where the wheel turns, and the point of the scene that is there.
     wheel: Option<(Pos2, DVec3)>,
@@ -92,7 +92,7 @@ impl Tools {
         without: &[Thing],
     ) -> Option<Selection> {
         if without.is_empty() {
-            self.sight.take(revision, map);
+            self.seen_objects.take(revision, map);
             return None;
         }
         let (at, of, before) = self.behind.as_mut()?;
@@ -149,7 +149,7 @@ impl Tools {
         if let Some(drag) = &mut self.drag {
             // Below the value that is written beside the pointer.
             show_gizmo(drag.handle());
-            if !drag.go_on(ui, &view, &self.sight, response, out) {
+            if !drag.go_on(ui, &view, &self.seen_objects, response, out) {
                 self.drag = None;
             }
         } else {
@@ -163,7 +163,8 @@ impl Tools {
         self.show_menu(ui, &view, response, out);
         let waits = matches!(self.drag, Some(Drag::Undecided(..))) || self.menu_waits;
         if waits || (!is_busy && self.drag.is_none()) {
-            out.questions.extend(self.sight.wanted(editor, place));
+            out.questions
+                .extend(self.seen_objects.wanted(editor, place));
         }
         if !is_busy && self.drag.is_none() {
             self.wheel = None;
@@ -191,14 +192,14 @@ impl Tools {
             return;
         }
         let at = ui.input(|input| input.pointer.latest_pos());
-        let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+        let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of);
         if let Some(pack) = dropped {
             let edit = item.and_then(|item| dressed(view.editor, pack, item));
             out.actions.extend(edit.map(Action::Edit));
         } else {
             let item = item.into_iter().collect();
-            self.sight
+            self.seen_objects
                 .show(&view.painter, view.editor, view.place.rect, item);
         }
     }
@@ -209,10 +210,10 @@ impl Tools {
             self.menu_at = ui.input(|input| input.pointer.interact_pos());
             self.menu_waits = true;
         }
-        if self.menu_waits && self.sight.map(view.editor).is_some() {
+        if self.menu_waits && self.seen_objects.map(view.editor).is_some() {
             self.menu_waits = false;
             let seen = self.menu_at;
-            let seen = seen.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+            let seen = seen.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
             if let Some(item) = seen.map(item_of)
                 && !view.editor.selection().has(item)
             {
@@ -271,16 +272,16 @@ impl Tools {
             let handle = handle.filter(|_| has_gizmo);
             let is_shifted = ui.input(|input| input.modifiers.shift);
             out.actions.push(Action::BeginGesture);
-            self.drag = Drag::start(view, &self.sight, (at, handle, is_shifted), out);
+            self.drag = Drag::start(view, &self.seen_objects, (at, handle, is_shifted), out);
         } else if response.drag_started_by(PointerButton::Middle) {
             out.actions.push(Action::BeginGesture);
-            self.drag = Some(Drag::Pan(view.point_at(&self.sight, at)));
+            self.drag = Some(Drag::Pan(view.point_at(&self.seen_objects, at)));
         }
     }
 
     /// Shows what the pointer is over.
     fn hover(&mut self, ui: &Ui, view: &View, at: Option<Pos2>, meant: Option<Handle>) {
-        let seen = at.and_then(|at| self.sight.at(view.editor, view.place.rect, at));
+        let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of).filter(|_| meant.is_none());
         // A line around the floor would be one around everything that stands on it.
         let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
@@ -289,7 +290,7 @@ impl Tools {
         let outlined = outlined.map(|item| selected.picked(scene, &[item]));
         let group = outlined.as_ref().and_then(|picked| picked.group(scene));
         let outlined = outlined.as_ref().map_or(&[][..], Selection::items);
-        self.sight.show(
+        self.seen_objects.show(
             &view.painter,
             view.editor,
             view.place.rect,
@@ -320,7 +321,7 @@ impl Tools {
         let known = self
             .wheel
             .filter(|(before, _)| (*before - at).length() < SAME_PLACE);
-        let point = known.map_or_else(|| view.point_at(&self.sight, at), |(_, point)| point);
+        let point = known.map_or_else(|| view.point_at(&self.seen_objects, at), |(_, point)| point);
         self.wheel = Some((at, point));
         let camera = dollied(&view.editor.shown().camera, point, wheel);
         out.edit(Edit::Camera(camera, "move"));
@@ -336,11 +337,11 @@ impl Tools {
         let Some((at, modifiers, _)) = self.click else {
             return;
         };
-        if self.sight.map(view.editor).is_none() {
+        if self.seen_objects.map(view.editor).is_none() {
             return;
         }
         self.click = None;
-        let seen = self.sight.at(view.editor, view.place.rect, at);
+        let seen = self.seen_objects.at(view.editor, view.place.rect, at);
         if modifiers.alt {
             return self.select_behind(view, at, seen, out);
         }
@@ -374,8 +375,8 @@ impl Tools {
 /// The camera with everything in its picture, or everything that is selected.
 pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let scene = editor.shown();
-    let selected = Subject::of(editor.selection(), scene);
-    let bounds = around(selected.iter().filter_map(Subject::bounds));
+    let selected = Movable::of(editor.selection(), scene);
+    let bounds = around(selected.iter().filter_map(Movable::bounds));
     let all = scene.surroundings();
     let (low, high) = bounds.filter(|_| only_selected).or(all)?;
     // A light without a marker is a point: some of what is around it is to be seen.
@@ -395,7 +396,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
 /// camera.
 pub fn is_selected_unseen(editor: &Editor) -> bool {
     let scene = editor.shown();
-    let selected = Subject::of(editor.selection(), scene);
+    let selected = Movable::of(editor.selection(), scene);
     let Some(framing) = scene.camera.framing() else {
         return false;
     };
@@ -405,7 +406,7 @@ pub fn is_selected_unseen(editor: &Editor) -> bool {
         let mut sides = sides.iter();
         sides.any(|(on, inwards)| (middle - *on).dot(*inwards) < -radius)
     };
-    let mut bounds = selected.iter().map(Subject::bounds);
+    let mut bounds = selected.iter().map(Movable::bounds);
     !selected.is_empty() && bounds.all(|bounds| bounds.is_some_and(is_out))
 }
 

@@ -22,7 +22,7 @@ pub struct Outline {
 
 /// What a pixel shows; the sky has no end.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
+pub struct PixelObject {
     /// Whether it is wanted.
     pub is_wanted: bool,
     /// Whether it has an end: before what has none, everything else stands in front.
@@ -34,7 +34,7 @@ pub struct Seen {
 pub fn outline(
     map: &ObjectMap,
     (color, halo): (Color32, Color32),
-    seen: impl Fn(Thing) -> Seen,
+    seen: impl Fn(Thing) -> PixelObject,
 ) -> Option<Outline> {
     let (inside, columns, rows) = silhouette(map, seen)?;
     let reach = LINE + HALO;
@@ -77,16 +77,16 @@ pub fn outline(
 /// What is seen at each pixel, and the columns and rows of those that show something wanted.
 fn silhouette(
     map: &ObjectMap,
-    seen: impl Fn(Thing) -> Seen,
-) -> Option<(Vec<Seen>, Range<usize>, Range<usize>)> {
+    seen: impl Fn(Thing) -> PixelObject,
+) -> Option<(Vec<PixelObject>, Range<usize>, Range<usize>)> {
     let mut inside = Vec::with_capacity(map.width() * map.height());
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
     // Neighbours are mostly alike.
-    let mut last = (None, Seen::default());
+    let mut last = (None, PixelObject::default());
     for row in 0..map.height() {
         for (column, thing) in map.row(row).enumerate() {
             if thing != last.0 {
-                last = (thing, thing.map_or(Seen::default(), &seen));
+                last = (thing, thing.map_or(PixelObject::default(), &seen));
             }
             inside.push(last.1);
             if last.1.is_wanted {
@@ -99,13 +99,13 @@ fn silhouette(
 }
 
 /// Whether a pixel shows something wanted, and a neighbour of it something else that is not in front of that.
-fn is_border(inside: &[Seen], width: usize, column: usize, row: usize) -> bool {
+fn is_border(inside: &[PixelObject], width: usize, column: usize, row: usize) -> bool {
     let at = row * width + column;
     let own = inside[at];
-    let is_end = |there: &Seen| !there.is_wanted && (own.ends || !there.ends);
-    let is_out = |place: Option<usize>| {
-        place
-            .and_then(|place| inside.get(place))
+    let is_end = |there: &PixelObject| !there.is_wanted && (own.ends || !there.ends);
+    let is_out = |index: Option<usize>| {
+        index
+            .and_then(|index| inside.get(index))
             .is_some_and(is_end)
     };
     own.is_wanted
@@ -155,7 +155,7 @@ mod tests {
         let (ball, floor) = (Thing::Object(0), Thing::Object(8));
         let colors = (Color32::WHITE, Color32::BLACK);
         let seen = |wanted: Thing| {
-            move |thing: Thing| Seen {
+            move |thing: Thing| PixelObject {
                 is_wanted: thing == wanted,
                 ends: thing != floor,
             }

@@ -7,14 +7,14 @@ use crate::scene::{Light, Object, Scene, Shape};
 
 /// Something with a place.
 #[derive(Clone, Debug)]
-pub enum Subject {
+pub enum Movable {
     /// An object of this place in the list.
     Object(usize, Object),
     /// A light of this place in the list.
     Light(usize, Light),
 }
 
-impl Subject {
+impl Movable {
     /// The item as it is on show, if it has a place.
     pub fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
         match kind {

@@ -10,12 +10,12 @@ const MESHES: usize = 4;
 /// For a tile's rays, the nodes to start from. A node of these may be in no tree: its boxes come from
 /// several, and together hold everything that the rays can meet.
 #[derive(Clone, Debug, Default)]
-pub struct Roots {
+pub struct EntryPoints {
     objects: Option<Node>,
     meshes: Vec<(u32, Node)>,
 }
 
-impl Roots {
+impl EntryPoints {
     /// The roots of the trees themselves.
     pub fn forget(&mut self) {
         self.objects = None;
@@ -51,8 +51,8 @@ impl Roots {
             return false;
         };
         let mut kept = Node::empty();
-        for place in 0..objects.count {
-            if let Child::Member(member) = objects.child(place)
+        for index in 0..objects.count {
+            if let Child::Member(member) = objects.child(index)
                 && let Some(mesh) = (member as usize).checked_sub(geometry.primitives.len())
                 && self.meshes.len() < MESHES
             {
@@ -63,7 +63,7 @@ impl Roots {
                     None => continue,
                 }
             }
-            kept.take(&objects, place);
+            kept.take(&objects, index);
         }
         std::mem::swap(&mut objects, &mut kept);
         self.objects = Some(objects);
@@ -104,19 +104,19 @@ fn start<L: SimdFloat>(
         bvh.nodes.first()?,
         shaft.meets::<L>(token, &bvh.nodes[0], reach, &mut nears),
     );
-    let mut place = 0;
-    while place < met.count {
-        if let Child::Node(inner) = met.child(place) {
+    let mut index = 0;
+    while index < met.count {
+        if let Child::Node(inner) = met.child(index) {
             let inner = &bvh.nodes[inner as usize];
             let bits = shaft.meets::<L>(token, inner, reach, &mut nears);
             if bits.count_ones() as usize <= GROUP + 1 - met.count {
-                met.remove(place);
+                met.remove(index);
                 met.take_met(inner, bits);
                 // What has moved into its place is next.
                 continue;
             }
         }
-        place += 1;
+        index += 1;
     }
     (met.count > 0).then_some(met)
 }

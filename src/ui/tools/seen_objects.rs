@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use egui::{Color32, Context, Painter, Pos2, Rect, TextureHandle, TextureOptions, pos2, vec2};
 
-use super::outline::{Seen, outline};
+use super::outline::{PixelObject, outline};
 use crate::editor::{Editor, Item};
 use crate::image::{ObjectMap, Thing};
 use crate::plan::RenderRequest;
@@ -17,17 +17,17 @@ use crate::worker::Question;
 
 /// What is seen in the newest picture that was looked at.
 #[derive(Default)]
-pub struct Sight {
+pub struct SeenObjects {
     map: Option<(u64, ObjectMap)>,
     /// Revision and size of the picture that was asked about.
     asked: Option<(u64, (u32, u32))>,
     /// The lines of what is selected, and of what the pointer is over.
-    lines: [Lines; 2],
+    lines: [OutlineTextures; 2],
 }
 
 /// Lines on the graphics card.
 #[derive(Default)]
-struct Lines {
+struct OutlineTextures {
     /// The revision of the map, the colour, and what is surrounded.
     made_for: Option<(u64, Color32, Vec<Item>)>,
     /// Where they are, in pixels of the picture.
@@ -42,7 +42,7 @@ pub fn item_of(thing: Thing) -> Item {
     }
 }
 
-impl Sight {
+impl SeenObjects {
     /// The question what is seen in the picture at `place`, if that is neither known nor asked.
     pub fn wanted(&mut self, editor: &Editor, place: Place) -> Option<Question> {
         let wanted = (editor.shown_revision(), place.pixels);
@@ -153,7 +153,7 @@ pub fn pixel(map: &ObjectMap, view: Rect, at: Pos2) -> Option<[usize; 2]> {
     ])
 }
 
-impl Lines {
+impl OutlineTextures {
     fn update(
         &mut self,
         ctx: &Context,
@@ -167,7 +167,7 @@ impl Lines {
         let all: HashSet<Item> = items.iter().copied().collect();
         let made = (!items.is_empty()).then(|| {
             let colors = (*color, palette(ctx).halo);
-            outline(map, colors, |thing| Seen {
+            outline(map, colors, |thing| PixelObject {
                 is_wanted: all.contains(&item_of(thing)),
                 ends: ends(scene, thing),
             })

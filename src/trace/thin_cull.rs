@@ -1,8 +1,8 @@
 //! Whether something thin in the trees may slip between the samples of a tile at all: most tiles are spared to look for
 //! it ray by ray.
 
-use super::beside::Beside;
 use super::bundle::Shaft;
+use super::thin_margin::ThinMargin;
 use super::thresholds::{CROWDED, ONE_THING, SMALL};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::primitive::BoundingBox;
@@ -25,14 +25,14 @@ pub fn may_slip<L: SimdFloat>(
     token: L::Token,
     geometry: &Geometry<L::Real>,
     shaft: &Shaft<L::Real>,
-    beside: &Beside<L::Real>,
+    margin: &ThinMargin<L::Real>,
 ) -> bool {
     L::vectorize(
         token,
         #[inline(always)]
         || {
             let mut left = MOST_NODES;
-            let look = (shaft, beside, &mut left);
+            let look = (shaft, margin, &mut left);
             is_close::<L>(
                 token,
                 &geometry.bvh,
@@ -48,7 +48,7 @@ pub fn may_slip<L: SimdFloat>(
                     if radius + radius < width * least_pixels(&instance.mesh) {
                         return true;
                     }
-                    let look = (&shaft.seen_from(instance.centre), beside, left);
+                    let look = (&shaft.seen_from(instance.centre), margin, left);
                     is_close::<L>(
                         token,
                         &instance.mesh.bvh,
@@ -68,14 +68,14 @@ pub fn may_slip<L: SimdFloat>(
 fn is_close<L: SimdFloat>(
     token: L::Token,
     bvh: &Bvh<L::Real>,
-    (shaft, beside, left): (&Shaft<L::Real>, &Beside<L::Real>, &mut u32),
+    (shaft, margin, left): (&Shaft<L::Real>, &ThinMargin<L::Real>, &mut u32),
     is_so: impl Fn(u32, L::Real, &mut u32) -> bool,
 ) -> bool {
-    let mut waiting = [0; MOST_NODES as usize];
+    let mut stack = [0; MOST_NODES as usize];
     let mut count = 1;
     while 0 < count {
         count -= 1;
-        let Some(node) = bvh.nodes.get(waiting[count] as usize) else {
+        let Some(node) = bvh.nodes.get(stack[count] as usize) else {
             return false;
         };
         if *left == 0 {
@@ -83,18 +83,18 @@ fn is_close<L: SimdFloat>(
         }
         *left -= 1;
         let mut widths = [L::Real::ZERO; GROUP];
-        let mut bits = shaft.grazes::<L>(token, node, L::Real::INFINITY, beside, &mut widths);
+        let mut bits = shaft.grazes::<L>(token, node, L::Real::INFINITY, margin, &mut widths);
         while bits != 0 {
-            let place = bits.trailing_zeros() as usize;
+            let index = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            match node.child(place) {
-                Child::Member(member) if is_so(member, widths[place], left) => return true,
+            match node.child(index) {
+                Child::Member(member) if is_so(member, widths[index], left) => return true,
                 Child::Member(_) => {}
-                Child::Node(_) if count == waiting.len() => return true,
+                Child::Node(_) if count == stack.len() => return true,
                 // Looked at as one thing, it is not told from what is in it.
-                Child::Node(_) if is_one(node.bounds(place), widths[place]) => return true,
+                Child::Node(_) if is_one(node.bounds(index), widths[index]) => return true,
                 Child::Node(inner) => {
-                    waiting[count] = inner;
+                    stack[count] = inner;
                     count += 1;
                 }
             }
@@ -152,8 +152,8 @@ mod tests {
             let start = DVec3::new(x, 0.0, 0.0) - way * 300.0 - plan.centre;
             let origins = BoundingBox::around(&[Vec3::from_dvec3(start)]).widened(4.0);
             let ways = BoundingBox::around(&[Vec3::from_dvec3(way)]).widened(0.01);
-            let beside = Beside::slipping(width, 0.0);
-            may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &beside)
+            let margin = ThinMargin::slipping(width, 0.0);
+            may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &margin)
         };
         // The cylinder is 0.2 thick: as wide as two pixels and a little more, or less.
         for (x, is_thin) in [(0.0, false), (100.0, true), (200.0, false)] {

@@ -16,12 +16,12 @@ const BITS: usize = 64;
 
 /// Some faces of a mesh, and the nodes that hold no others.
 #[derive(Clone, Debug)]
-pub struct IdleFaces {
+pub struct CulledFaces {
     faces: Vec<u64>,
     nodes: Vec<u64>,
 }
 
-impl IdleFaces {
+impl CulledFaces {
     /// Those of a mesh that are turned to a light in a place, from the middle of the mesh: rays to the light which
     /// leave a closed mesh there have entered it elsewhere.
     fn towards<R: Real>(mesh: &PackedMesh<R>, place: Vec3<R>) -> Self {
@@ -32,23 +32,23 @@ impl IdleFaces {
         })
     }
 
-    /// The faces of a mesh that are idle.
+    /// The faces of a mesh that are left out.
     pub fn of<R: Real>(
         mesh: &PackedMesh<R>,
-        is_idle: impl Fn(&PackedTriangle<R>) -> bool + Sync,
+        is_culled: impl Fn(&PackedTriangle<R>) -> bool + Sync,
     ) -> Self {
         let word = |faces: &[PackedTriangle<R>]| {
             let bits = faces.iter().enumerate();
             bits.fold(0, |word, (bit, face)| {
-                word | u64::from(is_idle(face)) << bit
+                word | u64::from(is_culled(face)) << bit
             })
         };
-        let mut idle = Self {
+        let mut culled_faces = Self {
             faces: mesh.triangles.par_chunks(BITS).map(word).collect(),
             nodes: vec![0; mesh.bvh.nodes.len().div_ceil(BITS)],
         };
-        idle.find_nodes(&mesh.bvh);
-        idle
+        culled_faces.find_nodes(&mesh.bvh);
+        culled_faces
     }
 
     fn find_nodes<R: Real>(&mut self, bvh: &Bvh<R>) {
@@ -72,7 +72,7 @@ impl IdleFaces {
 
 /// What was found for the picture before, which the next one may need as well.
 #[derive(Clone, Debug, Default)]
-pub struct KeptIdle<R> {
+pub struct KeptCulledFaces<R> {
     known: HashMap<Key, Known<R>>,
     used: HashMap<Key, Known<R>>,
 }
@@ -84,12 +84,12 @@ type Key = (usize, [u64; 3]);
 struct Known<R> {
     /// Kept, so that no other is where it is.
     _mesh: Arc<PackedMesh<R>>,
-    idle: Arc<IdleFaces>,
+    culled_faces: Arc<CulledFaces>,
 }
 
-impl<R: Real> KeptIdle<R> {
-    /// The idle faces of a mesh for a light.
-    pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<IdleFaces> {
+impl<R: Real> KeptCulledFaces<R> {
+    /// The faces of a mesh that rays to a light can do without.
+    pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<CulledFaces> {
         let place = light - mesh.centre;
         let bits = place.to_array().map(|part| part.to_f64().to_bits());
         let key = (Arc::as_ptr(&mesh.mesh).addr(), bits);
@@ -97,10 +97,10 @@ impl<R: Real> KeptIdle<R> {
         let found = self.used.entry(key).or_insert_with(|| {
             known.remove(&key).unwrap_or_else(|| Known {
                 _mesh: Arc::clone(&mesh.mesh),
-                idle: Arc::new(IdleFaces::towards(&mesh.mesh, place)),
+                culled_faces: Arc::new(CulledFaces::towards(&mesh.mesh, place)),
             })
         });
-        Arc::clone(&found.idle)
+        Arc::clone(&found.culled_faces)
     }
 
     /// Forgets what the last picture did not need.
@@ -118,16 +118,20 @@ mod tests {
     #[test]
     fn half_of_a_ball_is_idle_with_its_nodes() {
         let mesh = PackedMesh::new(&Mesh::of(icosphere(1.0)));
-        let idle = IdleFaces::towards(&mesh, Vec3::new(0.0, 1e4, 0.0));
+        let culled_faces = CulledFaces::towards(&mesh, Vec3::new(0.0, 1e4, 0.0));
         let faces = 0..mesh.triangles.len() as u32;
         for face in faces.clone() {
             let is_up = mesh.triangles[face as usize].normal.y > 1e-3;
-            assert_eq!(idle.holds(Child::Member(face)), is_up, "{face}");
+            assert_eq!(culled_faces.holds(Child::Member(face)), is_up, "{face}");
         }
         for (index, node) in mesh.bvh.nodes.iter().enumerate() {
-            let all = (0..node.count).all(|place| idle.holds(node.child(place)));
-            assert_eq!(idle.holds(Child::Node(index as u32)), all, "{index}");
+            let all = (0..node.count).all(|place| culled_faces.holds(node.child(place)));
+            assert_eq!(
+                culled_faces.holds(Child::Node(index as u32)),
+                all,
+                "{index}"
+            );
         }
-        assert!(!idle.holds(Child::Node(0)));
+        assert!(!culled_faces.holds(Child::Node(0)));
     }
 }

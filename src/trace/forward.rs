@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::beam::{Bounds, beam_around};
-use super::beside::Beside;
 use super::bounce::Bounce;
 use super::bundle::{Shaft, aside};
-use super::candidates::{Among, Candidates};
+use super::candidates::{Candidates, Targets};
 use super::cull::Scratch;
 use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};
 use super::footprint::RayCone;
@@ -15,11 +14,12 @@ use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::paths::{IgnoredPrimitive, Paths, real};
 use super::samples::{Edges, Samples};
 use super::shade::Shader;
-use super::slip::may_slip;
 use super::stats::Rays;
+use super::thin_cull::may_slip;
+use super::thin_margin::ThinMargin;
 use super::thresholds::SLIPPING;
 use super::walk::Stack;
-use crate::plan::{HitOrder, IdleFaces, Plan, Show};
+use crate::plan::{CulledFaces, HitOrder, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -72,7 +72,7 @@ impl<L: SimdFloat> Bounce<L> {
     }
 
     /// Whether what may slip between samples is looked for.
-    fn looks_beside(&self) -> bool {
+    fn looks_for_thin(&self) -> bool {
         self.edges_are == Edges::Near
     }
 
@@ -93,7 +93,7 @@ impl<L: SimdFloat> Bounce<L> {
     }
 
     /// The faces of meshes that the rays of the packets do without.
-    fn unseen_by<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<IdleFaces>>] {
+    fn unseen_by<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<CulledFaces>>] {
         if self.parents.is_empty() {
             &plan.unseen_faces
         } else {
@@ -119,23 +119,23 @@ impl<L: SimdFloat> Bounce<L> {
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
-        let idle = self.unseen_by(plan);
+        let culled_faces = self.unseen_by(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
             let rays = packet.rays;
             let paths = Paths { rays, ignored };
-            let among = Among {
+            let targets = Targets {
                 candidates: &self.seen,
-                roots: &self.roots,
+                entry_points: &self.entry_points,
                 light: None,
-                idle,
+                culled_faces,
             };
             let (active, stack) = (packet.active, &mut scratch.stack);
             let mut uncertainty = self.uncertainties.get_mut(index);
             let blur = uncertainty.as_ref().map_or(none, |own| own.blur);
             let doubt;
-            (packet.near, doubt) = kernel.nearest(among, (&paths, blur), active, stack);
+            (packet.near, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
                 uncertainty.doubt = doubt;
             }
@@ -168,7 +168,7 @@ impl<L: SimdFloat> Bounce<L> {
         ball.radius += off.to_f64();
         if plan.screen.is_some() {
             // Room for what passes beside the rays to the lights, closer than a pixel.
-            let footprint = if self.looks_beside() {
+            let footprint = if self.looks_for_thin() {
                 Some(self.longest(kernel))
             } else {
                 None
@@ -195,7 +195,7 @@ impl<L: SimdFloat> Bounce<L> {
     /// Finds where the packets can start to look into the trees, and whether something thin may slip between them there.
     #[inline(always)]
     fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
-        self.roots.forget();
+        self.entry_points.forget();
         let Some((geometry, _)) = kernel.geometry() else {
             return;
         };
@@ -214,20 +214,20 @@ impl<L: SimdFloat> Bounce<L> {
         let slack = size * roundings() + aside(&blur, L::Real::ZERO, size);
         let shaft = Shaft::of(&origins.widened(slack), &directions);
         let infinity = L::Real::INFINITY;
-        self.seen.has_geometry = self
-            .roots
-            .narrow::<L>(kernel.token, geometry, &shaft, infinity);
+        self.seen.has_geometry =
+            self.entry_points
+                .narrow::<L>(kernel.token, geometry, &shaft, infinity);
         if self.thin.has_geometry {
             let (width, spread) = self.widest_cone(kernel);
-            let beside = Beside::slipping(width, spread);
-            self.thin.has_geometry = may_slip::<L>(kernel.token, geometry, &shaft, &beside);
+            let margin = ThinMargin::slipping(width, spread);
+            self.thin.has_geometry = may_slip::<L>(kernel.token, geometry, &shaft, &margin);
         }
     }
 
     /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
     /// edges. For mirrored rays, [`Self::aim`] knows.
     fn find_thin(&mut self, plan: &Plan<L::Real>) {
-        if !self.looks_beside() {
+        if !self.looks_for_thin() {
             self.thin.clear();
         } else if self.parents.is_empty() {
             let slipping = L::Real::from_f64(SLIPPING);
@@ -271,7 +271,7 @@ impl<L: SimdFloat> Bounce<L> {
         next: &mut Self,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
-        let looks_beside = self.looks_beside();
+        let looks_for_thin = self.looks_for_thin();
         let has_gaps = self.edges_are >= Edges::Bordered && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
@@ -279,7 +279,7 @@ impl<L: SimdFloat> Bounce<L> {
                 kernel,
                 is_first: self.parents.is_empty(),
                 may_mirror,
-                looks_beside,
+                looks_for_thin,
                 thin: &self.thin,
                 lights: &self.lights,
                 gaps: has_gaps.then_some(&self.lights),
@@ -287,7 +287,7 @@ impl<L: SimdFloat> Bounce<L> {
             let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
             let packet = &mut self.packets[index];
             let Some(mirrored) =
-                shader.shade(packet, (ignored, notes), &mut self.parts, (stack, rays))
+                shader.shade(packet, (ignored, notes), &mut self.mixed, (stack, rays))
             else {
                 continue;
             };
@@ -332,7 +332,7 @@ impl<L: SimdFloat> Bounce<L> {
             return;
         };
         let start_plane = self.start_plane(plan);
-        if !self.looks_beside() {
+        if !self.looks_for_thin() {
             return kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
         }
         let (width, spread) = self.widest_cone(kernel);

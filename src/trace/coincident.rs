@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::candidates::Among;
+use super::candidates::Targets;
 use super::intersect::{Kernel, Nearest};
 use super::paths::{Paths, real};
 use super::scan::Test;
@@ -22,7 +22,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(never)]
     pub fn settled(
         self,
-        among: Among<L::Real>,
+        targets: Targets<L::Real>,
         (paths, blur): (&Paths<L>, Blur<L>),
         nearest: Nearest<L>,
         stack: &mut Stack<L::Real>,
@@ -45,7 +45,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let (start, end) = (self.splat(start as f64), self.splat(end as f64));
                     let here = start.at_most(nearest.number) & nearest.number.less(end);
                     left &= !here.bits();
-                    let mut test = SettleTest {
+                    let mut test = CoincidentTest {
                         methods: &self.plan.methods,
                         over: &tie.over,
                         met: nearest,
@@ -60,9 +60,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     };
                     self.meet_all(&tie.over, paths, &mut test);
                     if tie.over.are_in_tree()
-                        && let Some(thicket) = self.thicket(among, (here, blur))
+                        && let Some(tree_scan) = self.tree_scan(targets, (here, blur))
                     {
-                        thicket.scan(paths, stack, &mut test);
+                        tree_scan.scan(paths, stack, &mut test);
                     }
                     let (found, is_found) = (test.found, test.rank.less(infinity));
                     settled.t = L::select(is_found, found.t, settled.t);
@@ -75,9 +75,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
     /// Tests those of some objects that stand in no tree.
     #[inline(always)]
-    fn meet_all(self, over: &Others, paths: &Paths<L>, test: &mut SettleTest<L>) {
+    fn meet_all(self, over: &Others, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
         for number in over.listed() {
-            let meet = Meet {
+            let meet = TestListed {
                 paths,
                 number,
                 test: &mut *test,
@@ -88,7 +88,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 }
 
 /// Looks for the first of some objects that is met where something was.
-struct SettleTest<'a, L: SimdFloat> {
+struct CoincidentTest<'a, L: SimdFloat> {
     methods: &'a Methods,
     over: &'a Others,
     met: Nearest<L>,
@@ -101,7 +101,7 @@ struct SettleTest<'a, L: SimdFloat> {
     rank: L,
 }
 
-impl<L: SimdFloat> Test<L> for SettleTest<'_, L> {
+impl<L: SimdFloat> Test<L> for CoincidentTest<'_, L> {
     #[inline(always)]
     fn reach(&self) -> L {
         let reach = self.met.t + self.apart * self.apart.like_f64(SLANT);
@@ -136,13 +136,13 @@ impl<L: SimdFloat> Test<L> for SettleTest<'_, L> {
 }
 
 /// A primitive that stands in no tree, tested.
-struct Meet<'a, 'b, L: SimdFloat> {
+struct TestListed<'a, 'b, L: SimdFloat> {
     paths: &'a Paths<L>,
     number: usize,
-    test: &'a mut SettleTest<'b, L>,
+    test: &'a mut CoincidentTest<'b, L>,
 }
 
-impl<L: SimdFloat> WithPrimitive<L::Real> for Meet<'_, '_, L> {
+impl<L: SimdFloat> WithPrimitive<L::Real> for TestListed<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]

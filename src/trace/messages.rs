@@ -26,7 +26,7 @@ type Message = ([usize; 2], u8);
 
 /// What the pixels of a picture, or of rows of it, know and are told.
 #[derive(Debug)]
-pub struct Told {
+pub struct EdgeMessages {
     width: usize,
     rows: Range<usize>,
     /// The sides of each that have nothing more to tell, bit by bit.
@@ -36,21 +36,24 @@ pub struct Told {
 
 /// What the pixels of a band are told.
 #[derive(Clone, Copy, Debug)]
-pub struct Hearing<'a> {
+pub struct BandMessages<'a> {
     /// By whom.
-    pub told: &'a Told,
+    pub messages: &'a EdgeMessages,
     /// Those that were told something, by row and column, if only these are traced.
     pub those: Option<&'a [[usize; 2]]>,
 }
 
-impl<'a> Hearing<'a> {
+impl<'a> BandMessages<'a> {
     /// Of all pixels.
-    pub fn all(told: &'a Told) -> Self {
-        Self { told, those: None }
+    pub fn all(messages: &'a EdgeMessages) -> Self {
+        Self {
+            messages,
+            those: None,
+        }
     }
 }
 
-impl Told {
+impl EdgeMessages {
     /// Nothing yet, for these rows of so many pixels.
     pub fn new(width: usize, rows: Range<usize>) -> Self {
         let pixels = width * rows.len();
@@ -79,13 +82,13 @@ impl Told {
     }
 
     /// Tells a pixel something from one of its sides.
-    pub fn tell(&self, pixel: [usize; 2], side: u8) {
+    pub fn send(&self, pixel: [usize; 2], side: u8) {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.push((pixel, side));
     }
 
     /// The pixels that were told what they do not know, row by row, once.
-    pub fn heard(&mut self) -> BTreeSet<[usize; 2]> {
+    pub fn received(&mut self) -> BTreeSet<[usize; 2]> {
         let waiting = self
             .waiting
             .get_mut()
@@ -105,23 +108,23 @@ mod tests {
 
     #[test]
     fn pixels_hear_once_what_they_do_not_know() {
-        let mut told = Told::new(3, 5..7);
+        let mut messages = EdgeMessages::new(3, 5..7);
         for (pixel, side) in [
             ([6, 2], LEFT),
             ([5, 0], ABOVE),
             ([6, 2], ABOVE),
             ([5, 1], LEFT),
         ] {
-            told.tell(pixel, side);
+            messages.send(pixel, side);
         }
         let know = |row: usize, column: usize, sides: u8| {
-            told.row(row, &(column..column + 1))[0].store(sides, Ordering::Relaxed);
+            messages.row(row, &(column..column + 1))[0].store(sides, Ordering::Relaxed);
         };
         know(5, 1, LEFT);
         know(6, 2, LEFT | RIGHT);
-        assert!(told.has(6) && !told.has(7) && !told.has(4));
-        let heard: Vec<[usize; 2]> = told.heard().into_iter().collect();
-        assert_eq!(heard, [[5, 0], [6, 2]]);
-        assert!(told.heard().is_empty());
+        assert!(messages.has(6) && !messages.has(7) && !messages.has(4));
+        let received: Vec<[usize; 2]> = messages.received().into_iter().collect();
+        assert_eq!(received, [[5, 0], [6, 2]]);
+        assert!(messages.received().is_empty());
     }
 }

@@ -8,7 +8,7 @@ use crate::plan::{Material, Plan, Show, Surface};
 use crate::simd::{Exponent, MAX_LANES, Real, SimdFloat, Vec3};
 
 /// The light that arrives, summed over the lights.
-pub struct Arriving<L: SimdFloat> {
+pub struct ArrivingLight<L: SimdFloat> {
     /// Σ intensity · n·l, what matte colours are multiplied by.
     pub matte: L,
     /// Σ intensity · (n·h)^p, what the colours of highlights are multiplied by.
@@ -17,7 +17,7 @@ pub struct Arriving<L: SimdFloat> {
     pub doubt: L::Mask,
 }
 
-impl<L: SimdFloat> Arriving<L> {
+impl<L: SimdFloat> ArrivingLight<L> {
     /// What it adds to the colour of a surface.
     #[inline(always)]
     pub fn color(&self, surface: &Surface<L::Real>, show: Show<L::Real>) -> Vec3<L> {
@@ -30,7 +30,7 @@ impl<L: SimdFloat> Arriving<L> {
 }
 
 /// Materials, and where they are.
-pub struct Parts<L: SimdFloat> {
+pub struct MixedMaterials<L: SimdFloat> {
     /// Each with its index into [`crate::plan::Plan::materials`].
     materials: Vec<(L::Mask, u32)>,
     /// The exponents of highlights.
@@ -39,7 +39,7 @@ pub struct Parts<L: SimdFloat> {
     pub shiny: Option<L::Mask>,
 }
 
-impl<L: SimdFloat> Parts<L> {
+impl<L: SimdFloat> MixedMaterials<L> {
     /// None, and room for those of a packet.
     pub fn new() -> Self {
         Self {
@@ -119,7 +119,7 @@ impl<L: SimdFloat> Parts<L> {
 
     /// Adds the light that arrives.
     #[inline(never)]
-    pub fn color(&self, plan: &Plan<L::Real>, arriving: &Arriving<L>, color: &mut Vec3<L>) {
+    pub fn color(&self, plan: &Plan<L::Real>, arriving: &ArrivingLight<L>, color: &mut Vec3<L>) {
         L::vectorize(
             color.x.token(),
             #[inline(always)]
@@ -171,7 +171,7 @@ impl<L: SimdFloat> Parts<L> {
         )
     }
 
-    /// What light of intensity 1 adds, all channels together, see [`super::coat::Coat::shows`].
+    /// What light of intensity 1 adds, all channels together, see [`super::hit_material::HitMaterial::shows`].
     #[inline(never)]
     pub fn glow(&self, plan: &Plan<L::Real>, (cosine, normal, half): (L, Vec3<L>, Vec3<L>)) -> L {
         L::vectorize(

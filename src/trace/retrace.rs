@@ -6,33 +6,33 @@ use super::candidates::Candidates;
 use super::engine::{Engine, Reference, Workspace};
 use super::intersect::Kernel;
 use super::samples::{Edges, Samples, Traced};
-use super::shelf::Shelf;
+use super::workspace_pool::WorkspacePool;
 use crate::plan::Plan;
 use crate::simd::{Level, SimdFloat, WithSimd};
 
 /// The same picture in double precision.
 #[derive(Debug)]
-pub struct Exact {
+pub struct DoubleReference {
     plan: Box<Plan<f64>>,
     /// Everything that can be seen.
     seen: Candidates,
     level: Level,
-    shelf: Shelf,
+    workspace_pool: WorkspacePool,
 }
 
-impl Exact {
+impl DoubleReference {
     /// What traces samples of a plan.
     pub fn new(plan: Box<Plan<f64>>, level: Level) -> Self {
         Self {
             seen: Candidates::all_seen(&plan),
             plan,
             level,
-            shelf: Shelf::default(),
+            workspace_pool: WorkspacePool::default(),
         }
     }
 }
 
-impl Reference for Exact {
+impl Reference for DoubleReference {
     fn trace(
         &self,
         samples: &mut Samples<f64>,
@@ -40,7 +40,7 @@ impl Reference for Exact {
         stop: &AtomicBool,
         traced: &mut Traced<f64>,
     ) {
-        self.level.run(Again {
+        self.level.run(Retrace {
             exact: self,
             samples,
             edges,
@@ -51,27 +51,30 @@ impl Reference for Exact {
 }
 
 /// Samples to be traced.
-struct Again<'a> {
-    exact: &'a Exact,
+struct Retrace<'a> {
+    exact: &'a DoubleReference,
     samples: &'a mut Samples<f64>,
     edges: Edges,
     stop: &'a AtomicBool,
     traced: &'a mut Traced<f64>,
 }
 
-impl WithSimd<f64> for Again<'_> {
+impl WithSimd<f64> for Retrace<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = f64>>(self, token: L::Token) {
-        let Exact {
-            plan, seen, shelf, ..
+        let DoubleReference {
+            plan,
+            seen,
+            workspace_pool,
+            ..
         } = self.exact;
-        let mut work = shelf.take::<Workspace<L>>().unwrap_or_default();
+        let mut work = workspace_pool.take::<Workspace<L>>().unwrap_or_default();
         self.samples.pad(L::WIDTH);
         let kernel = Kernel { token, plan };
         let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.stop, None));
         engine.trace(self.samples, seen, self.edges, self.traced);
-        shelf.put(work);
+        workspace_pool.put(work);
     }
 }

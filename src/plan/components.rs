@@ -25,22 +25,22 @@ pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
 /// from 0 on.
 pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
     let count = points.iter().flatten().max().map_or(0, |&last| last + 1);
-    let mut forest = Forest::new(count);
+    let mut sets = UnionFind::new(count);
     for &[a, b, c] in points {
-        forest.join(a, b);
-        forest.join(b, c);
+        sets.join(a, b);
+        sets.join(b, c);
     }
-    numbered(points.iter().map(|face| forest.first(face[0])))
+    numbered(points.iter().map(|face| sets.first(face[0])))
 }
 
 /// The same for so many faces, of which these pairs have an edge in common: those that only touch at a corner are parts
 /// of their own.
-pub fn parts_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
-    let mut forest = Forest::new(count as u32);
+pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
+    let mut sets = UnionFind::new(count as u32);
     for [one, other] in pairs {
-        forest.join(one, other);
+        sets.join(one, other);
     }
-    numbered((0..count as u32).map(|face| forest.first(face)))
+    numbered((0..count as u32).map(|face| sets.first(face)))
 }
 
 /// Numbers from 0 on for what these are, in their order.
@@ -124,9 +124,9 @@ fn volume_from(tip: DVec3, foot: [DVec3; 3]) -> f64 {
 
 /// What is connected, as a forest: each names one before it, the first of a part itself
 /// (Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM 22, 1975).
-struct Forest(Vec<u32>);
+struct UnionFind(Vec<u32>);
 
-impl Forest {
+impl UnionFind {
     fn new(count: u32) -> Self {
         Self((0..count).collect())
     }
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn faces_hang_together_along_edges() {
         // Faces 0, 2 and 3 in a row, and two by themselves.
-        let parts = parts_along_edges(5, [[3, 2], [0, 3]].into_iter());
+        let parts = components_along_edges(5, [[3, 2], [0, 3]].into_iter());
         assert_eq!(parts, [0, 1, 0, 0, 2]);
         assert_eq!(first_of_parts(&parts), [0, 1, 0, 0, 4]);
         assert!(first_of_parts(&[0; 5]).is_empty());

@@ -9,7 +9,7 @@ const PASSED_BEFORE: f64 = 4.0;
 
 /// How wide a pixel is around the rays, at most: where they start, and how much more at distance 1.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Beside<R> {
+pub struct ThinMargin<R> {
     /// Scene units.
     pub width: R,
     /// Scene units per scene unit.
@@ -22,7 +22,7 @@ pub struct Beside<R> {
     pub least: R,
 }
 
-impl<R: Real> Beside<R> {
+impl<R: Real> ThinMargin<R> {
     /// What may slip between samples, where pixels are so wide.
     #[inline(always)]
     pub fn slipping(width: R, spread: R) -> Self {

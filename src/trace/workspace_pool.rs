@@ -5,9 +5,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// What pieces work with that nobody traces, of a type that only they know: one for each thread at most.
 #[derive(Debug, Default)]
-pub struct Shelf(Mutex<Vec<Box<dyn Any + Send>>>);
+pub struct WorkspacePool(Mutex<Vec<Box<dyn Any + Send>>>);
 
-impl Shelf {
+impl WorkspacePool {
     /// Something of this type, if that is there.
     pub fn take<T: Any>(&self) -> Option<Box<T>> {
         let left = self.kept().pop()?;
@@ -30,12 +30,16 @@ mod tests {
 
     #[test]
     fn what_was_left_is_taken_once() {
-        let shelf = Shelf::default();
-        assert_eq!(shelf.take::<u32>(), None);
-        shelf.put(Box::new(7_u32));
-        assert_eq!(shelf.take::<u32>(), Some(Box::new(7)));
-        assert_eq!(shelf.take::<u32>(), None);
-        shelf.put(Box::new(7_u32));
-        assert_eq!(shelf.take::<String>(), None, "it is something else");
+        let workspace_pool = WorkspacePool::default();
+        assert_eq!(workspace_pool.take::<u32>(), None);
+        workspace_pool.put(Box::new(7_u32));
+        assert_eq!(workspace_pool.take::<u32>(), Some(Box::new(7)));
+        assert_eq!(workspace_pool.take::<u32>(), None);
+        workspace_pool.put(Box::new(7_u32));
+        assert_eq!(
+            workspace_pool.take::<String>(),
+            None,
+            "it is something else"
+        );
     }
 }

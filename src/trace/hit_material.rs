@@ -1,28 +1,28 @@
 //! What hits are made of that are lit as one.
 
 use super::footprint::Footprint;
-use super::parts::Parts;
+use super::mixed_materials::MixedMaterials;
 use super::thresholds::EDGE_CONTRAST;
 use crate::plan::{Plan, PointLight, Surface};
 use crate::simd::{SimdFloat, Vec3};
 
 /// What hits are made of.
 #[derive(Clone, Copy)]
-pub enum Coat<'a, L: SimdFloat> {
+pub enum HitMaterial<'a, L: SimdFloat> {
     /// One material.
     One(&'a Surface<L::Real>),
     /// Seldom, and never without a tree.
-    Several(&'a Parts<L>),
+    Several(&'a MixedMaterials<L>),
 }
 
-impl<L: SimdFloat> Coat<'_, L> {
+impl<L: SimdFloat> HitMaterial<'_, L> {
     /// The highlights, see [`crate::simd::Exponent::highlight`]; `None` where nothing has any.
     #[inline(always)]
     pub fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
         match self {
             // No closure: it may be compiled by itself, without vectors.
             Self::One(surface) => Some(surface.exponent?.highlight(normal, half)),
-            Self::Several(parts) => Some(parts.highlight(normal, half)),
+            Self::Several(mixed) => Some(mixed.highlight(normal, half)),
         }
     }
 
@@ -32,7 +32,7 @@ impl<L: SimdFloat> Coat<'_, L> {
         match self {
             Self::One(Surface { exponent: None, .. }) => None,
             Self::One(_) => Some(here),
-            Self::Several(parts) => parts.shiny,
+            Self::Several(mixed) => mixed.shiny,
         }
     }
 
@@ -40,7 +40,7 @@ impl<L: SimdFloat> Coat<'_, L> {
     pub fn is_sharp(&self) -> bool {
         match self {
             Self::One(surface) => surface.size_of_highlight().is_some(),
-            Self::Several(parts) => parts.is_any_sharp(),
+            Self::Several(mixed) => mixed.is_any_sharp(),
         }
     }
 
@@ -52,7 +52,7 @@ impl<L: SimdFloat> Coat<'_, L> {
                 let size = surface.size_of_highlight().unwrap_or_default();
                 footprint.highlight_distance(size, off, light_distance)
             }
-            Self::Several(parts) => parts.highlight_distance(footprint, off, light_distance),
+            Self::Several(mixed) => mixed.highlight_distance(footprint, off, light_distance),
         }
     }
 
@@ -61,7 +61,7 @@ impl<L: SimdFloat> Coat<'_, L> {
     pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
         match self {
             Self::One(surface) => like.like(surface.brightness()),
-            Self::Several(parts) => parts.brightness(plan, like),
+            Self::Several(mixed) => mixed.brightness(plan, like),
         }
     }
 
@@ -93,7 +93,7 @@ impl<L: SimdFloat> Coat<'_, L> {
                             }
                         }
                     }
-                    Self::Several(parts) => parts.glow(plan, (cosine, normal, half)),
+                    Self::Several(mixed) => mixed.glow(plan, (cosine, normal, half)),
                 };
                 cosine
                     .like_f64(EDGE_CONTRAST)
