@@ -77,14 +77,14 @@ struct Stats {
     lanes: String,
     /// What was chosen, where that was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    chosen: Option<Chosen>,
+    chosen: Option<ChosenSampling>,
     threads: usize,
     width: u32,
     height: u32,
 }
 
 #[derive(Serialize)]
-struct Chosen {
+struct ChosenSampling {
     antialias: String,
     /// As measured on strips of the picture.
     rmse: f64,
@@ -281,7 +281,7 @@ fn stats(
         trace_ms_min: millis[0],
         rays,
         lanes,
-        chosen: choice.map(|choice| Chosen {
+        chosen: choice.map(|choice| ChosenSampling {
             antialias: choice.sampling.id(),
             rmse: choice.rmse,
             is_met: choice.is_met,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::item::{Item, Kind};
+use super::item::{Item, ItemKind};
 use super::names::{
     Spot, copy_offset, free_light_name, free_object_name, free_pack_name, way_past,
 };
@@ -96,7 +96,7 @@ pub fn add_pack(scene: &mut Scene) -> Item {
 pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
     let Item { kind, index } = item;
     match kind {
-        Kind::Object => {
+        ItemKind::Object => {
             let original = scene.objects.get(index)?.clone();
             let mut copy = original.clone();
             copy.name = free_object_name(scene, &copy.name);
@@ -105,7 +105,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             copy_tracks(scene, Owner::Object(&original.name), &copy.name, by);
             scene.objects.insert(index + 1, copy);
         }
-        Kind::Light => {
+        ItemKind::Light => {
             let original = scene.lights.get(index)?.clone();
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
@@ -115,7 +115,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);
             scene.lights.insert(index + 1, copy);
         }
-        Kind::Pack => {
+        ItemKind::Pack => {
             let (name, pack) = scene.color_packs.get_index(index)?;
             let (name, pack) = (free_pack_name(scene, name), pack.clone());
             scene.packs_mut().shift_insert(index + 1, name, pack);

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 
 use super::adding::step_of_light;
 use super::arrange::{Arrangement, arrange};
-use super::item::{Item, Kind};
+use super::item::{Item, ItemKind};
 use super::names::{Spot, step_aside, way_past};
 use super::selection::Selection;
 use crate::scene::{
@@ -23,15 +23,15 @@ const THINNEST: f64 = 0.05;
 /// The selected things alone, with the packs that they wear and the keys of their values.
 pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
     let of = |kind| selected.places(kind).into_iter();
-    let objects = of(Kind::Object).filter_map(|index| scene.objects.get(index).cloned());
-    let lights = of(Kind::Light).filter_map(|index| scene.lights.get(index).cloned());
+    let objects = of(ItemKind::Object).filter_map(|index| scene.objects.get(index).cloned());
+    let lights = of(ItemKind::Light).filter_map(|index| scene.lights.get(index).cloned());
     let mut part = Scene {
         objects: objects.collect(),
         lights: lights.collect(),
         ..Scene::empty()
     };
     let worn = part.worn_packs();
-    let chosen: HashSet<usize> = of(Kind::Pack).collect();
+    let chosen: HashSet<usize> = of(ItemKind::Pack).collect();
     let packs = scene.color_packs.iter().enumerate();
     let packs =
         packs.filter(|(place, (name, _))| worn.contains(name.as_str()) || chosen.contains(place));

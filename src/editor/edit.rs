@@ -15,7 +15,7 @@ use crate::words::listed;
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
 use super::arrange::{Arrangement, arrange, group};
 use super::clipboard::paste;
-use super::item::{Item, Kind};
+use super::item::{Item, ItemKind};
 
 /// A change of the scene. The `&'static str` names the field that changed: edits of one field
 /// during one gesture are one step in the history.
@@ -185,17 +185,17 @@ impl Edit {
         (to_object, to_light): (impl FnOnce(&mut Object), impl FnOnce(&mut Light)),
     ) -> Option<Self> {
         match kind {
-            Kind::Object => {
+            ItemKind::Object => {
                 let mut object = scene.objects.get(index)?.clone();
                 to_object(&mut object);
                 Some(Self::object(index, object, field))
             }
-            Kind::Light => {
+            ItemKind::Light => {
                 let mut light = scene.lights.get(index)?.clone();
                 to_light(&mut light);
                 Some(Self::Light(index, light, field))
             }
-            Kind::Pack => None,
+            ItemKind::Pack => None,
         }
     }
 
@@ -311,10 +311,10 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
     let (mut objects, mut lights) = (Vec::new(), Vec::new());
     for &Item { kind, index } in &items {
         match kind {
-            Kind::Object if index < scene.objects.len() => {
+            ItemKind::Object if index < scene.objects.len() => {
                 objects.push(scene.objects.remove(index).name);
             }
-            Kind::Light if index < scene.lights.len() => {
+            ItemKind::Light if index < scene.lights.len() => {
                 lights.push(scene.lights.remove(index).name);
             }
             _ => {}
@@ -325,7 +325,7 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
         let gone = gone.chain(lights.iter().map(|name| Owner::Light(name)));
         scene.animation_mut().forget(&gone.collect());
     }
-    let packs = items.iter().filter(|item| item.kind == Kind::Pack);
+    let packs = items.iter().filter(|item| item.kind == ItemKind::Pack);
     let packs: Vec<usize> = packs.map(|item| item.index).collect();
     if packs.is_empty() {
         return Ok(());
@@ -357,18 +357,18 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
         return Ok(());
     };
     match item.kind {
-        Kind::Object => {
+        ItemKind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
             scene.animation_mut().follow_name(Owner::Object(&from), to);
         }
-        Kind::Light => {
+        ItemKind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
             scene.animation_mut().follow_name(Owner::Light(&from), to);
         }
-        Kind::Pack if scene.color_packs.contains_key(to) => {
+        ItemKind::Pack if scene.color_packs.contains_key(to) => {
             return Err(EditError::PackNameTaken(to.to_owned()));
         }
-        Kind::Pack => {
+        ItemKind::Pack => {
             let pack = scene.packs_mut().shift_remove(&from).unwrap_or_default();
             scene
                 .packs_mut()
@@ -405,9 +405,9 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     let moved: BTreeSet<usize> = moved.collect();
     let to = to.min(count - moved.len());
     match kind {
-        Kind::Object => move_within(&mut scene.objects, &moved, to),
-        Kind::Light => move_within(&mut scene.lights, &moved, to),
-        Kind::Pack => {
+        ItemKind::Object => move_within(&mut scene.objects, &moved, to),
+        ItemKind::Light => move_within(&mut scene.lights, &moved, to),
+        ItemKind::Pack => {
             let packs = scene.packs_mut();
             let taken = moved.iter().rev();
             let taken = taken.filter_map(|index| packs.shift_remove_index(*index));

@@ -4,7 +4,7 @@ use crate::scene::Scene;
 
 /// A list of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum ItemKind {
     /// [`Scene::lights`].
     Light,
     /// [`Scene::objects`].
@@ -13,7 +13,7 @@ pub enum Kind {
     Pack,
 }
 
-impl Kind {
+impl ItemKind {
     /// How many of them the scene has.
     pub fn count(self, scene: &Scene) -> usize {
         match self {
@@ -28,7 +28,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item {
     /// Which list.
-    pub kind: Kind,
+    pub kind: ItemKind,
     /// Place in the list, from 0.
     pub index: usize,
 }
@@ -37,7 +37,7 @@ impl Item {
     /// The object in this place.
     pub const fn object(index: usize) -> Self {
         Self {
-            kind: Kind::Object,
+            kind: ItemKind::Object,
             index,
         }
     }
@@ -45,7 +45,7 @@ impl Item {
     /// The light in this place.
     pub const fn light(index: usize) -> Self {
         Self {
-            kind: Kind::Light,
+            kind: ItemKind::Light,
             index,
         }
     }
@@ -53,7 +53,7 @@ impl Item {
     /// The pack in this place.
     pub const fn pack(index: usize) -> Self {
         Self {
-            kind: Kind::Pack,
+            kind: ItemKind::Pack,
             index,
         }
     }
@@ -79,39 +79,39 @@ impl Item {
     /// The pack of an object or of a light's marker, or the one it is, by its name.
     pub fn color_pack(self, scene: &Scene) -> Option<&str> {
         match self.kind {
-            Kind::Light => {
+            ItemKind::Light => {
                 let marker = scene.lights.get(self.index)?.marker.as_ref();
                 marker.map(|marker| marker.color_pack.as_str())
             }
-            Kind::Object => {
+            ItemKind::Object => {
                 let object = scene.objects.get(self.index);
                 object.map(|object| object.color_pack.as_str())
             }
-            Kind::Pack => self.name(scene),
+            ItemKind::Pack => self.name(scene),
         }
     }
 
     /// Whether it shines, or is visible; `None` for packs, and where there is none.
     pub fn is_visible(self, scene: &Scene) -> Option<bool> {
         match self.kind {
-            Kind::Light => scene.lights.get(self.index).map(|light| light.visible),
-            Kind::Object => scene.objects.get(self.index).map(|object| object.visible),
-            Kind::Pack => None,
+            ItemKind::Light => scene.lights.get(self.index).map(|light| light.visible),
+            ItemKind::Object => scene.objects.get(self.index).map(|object| object.visible),
+            ItemKind::Pack => None,
         }
     }
 
     /// Its name, if the scene has it.
     pub fn name(self, scene: &Scene) -> Option<&str> {
         match self.kind {
-            Kind::Light => scene
+            ItemKind::Light => scene
                 .lights
                 .get(self.index)
                 .map(|light| light.name.as_str()),
-            Kind::Object => scene
+            ItemKind::Object => scene
                 .objects
                 .get(self.index)
                 .map(|object| object.name.as_str()),
-            Kind::Pack => scene
+            ItemKind::Pack => scene
                 .color_packs
                 .get_index(self.index)
                 .map(|(name, _)| name.as_str()),

@@ -43,7 +43,7 @@ pub use clipboard::{excerpt, read};
 pub use document::Editor;
 pub use edit::{Edit, EditError};
 pub use fly::Motion;
-pub use item::{Item, Kind};
+pub use item::{Item, ItemKind};
 pub use messages::replaced_flight;
 pub use names::{free_bookmark_name, free_group_name};
 pub use own_file::OwnFile;

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::item::{Item, Kind};
+use super::item::{Item, ItemKind};
 use crate::scene::{Keys, Object, Scene};
 
 /// What is selected, and shown in the inspector.
@@ -108,7 +108,7 @@ impl Selection {
 
     /// Whether what is selected is a group already, of one or of several, and nothing else.
     pub fn is_group(&self, scene: &Scene) -> bool {
-        let only = self.item().filter(|item| item.kind == Kind::Object);
+        let only = self.item().filter(|item| item.kind == ItemKind::Object);
         let only = only.and_then(|item| scene.objects.get(item.index));
         let is_alone = |object: &Object| {
             let groups = scene.objects.iter().map(|object| &object.group);
@@ -154,13 +154,13 @@ impl Selection {
     }
 
     /// Those of a kind; the one that was selected last comes last.
-    pub fn of_kind(&self, kind: Kind) -> Vec<Item> {
+    pub fn of_kind(&self, kind: ItemKind) -> Vec<Item> {
         let own = self.items().iter().filter(|item| item.kind == kind);
         own.copied().collect()
     }
 
     /// The places of those of a kind, in ascending order.
-    pub fn places(&self, kind: Kind) -> Vec<usize> {
+    pub fn places(&self, kind: ItemKind) -> Vec<usize> {
         let own = self.of_kind(kind).into_iter();
         let mut places: Vec<usize> = own.map(|item| item.index).collect();
         places.sort_unstable();
@@ -175,7 +175,11 @@ impl Selection {
     /// For each object, of so many, whether it is among them: for whoever asks of many.
     pub fn object_marks(&self, count: usize) -> Vec<bool> {
         let mut marks = vec![false; count];
-        for item in self.items().iter().filter(|item| item.kind == Kind::Object) {
+        for item in self
+            .items()
+            .iter()
+            .filter(|item| item.kind == ItemKind::Object)
+        {
             if let Some(mark) = marks.get_mut(item.index) {
                 *mark = true;
             }
@@ -197,9 +201,9 @@ impl Selection {
     /// The middle of all that have a place; `None` if nothing has.
     pub fn middle(&self, scene: &Scene) -> Option<DVec3> {
         let middles = self.items().iter().filter_map(|item| match item.kind {
-            Kind::Object => Some(scene.objects.get(item.index)?.shape.middle()),
-            Kind::Light => Some(scene.lights.get(item.index)?.position),
-            Kind::Pack => None,
+            ItemKind::Object => Some(scene.objects.get(item.index)?.shape.middle()),
+            ItemKind::Light => Some(scene.lights.get(item.index)?.position),
+            ItemKind::Pack => None,
         });
         let middles: Vec<DVec3> = middles.collect();
         (!middles.is_empty()).then(|| middles.iter().sum::<DVec3>() / middles.len() as f64)
@@ -208,7 +212,7 @@ impl Selection {
     /// What all that have a place are turned about: a single thing about a point of its own.
     pub fn pivot(&self, scene: &Scene) -> Option<DVec3> {
         match self.only_placed() {
-            Some(item) if item.kind == Kind::Object => {
+            Some(item) if item.kind == ItemKind::Object => {
                 Some(scene.objects.get(item.index)?.shape.pivot())
             }
             _ => self.middle(scene),
@@ -217,7 +221,10 @@ impl Selection {
 
     /// The one that has a place, where others that are selected have none.
     pub fn only_placed(&self) -> Option<Item> {
-        let mut placed = self.items().iter().filter(|item| item.kind != Kind::Pack);
+        let mut placed = self
+            .items()
+            .iter()
+            .filter(|item| item.kind != ItemKind::Pack);
         let first = placed.next().copied();
         first.filter(|_| placed.next().is_none())
     }
@@ -259,14 +266,14 @@ impl Selection {
         if self.items().iter().all(stays) {
             return self.clone();
         }
-        let mut places: HashMap<(Kind, &str), Item> = HashMap::new();
+        let mut places: HashMap<(ItemKind, &str), Item> = HashMap::new();
         let packs = (0..to.color_packs.len()).map(Item::pack);
         for item in Item::everything(to).chain(packs) {
             if let Some(name) = item.name(to) {
                 places.insert((item.kind, name), item);
             }
         }
-        let same_length = |kind: Kind| kind.count(from) == kind.count(to);
+        let same_length = |kind: ItemKind| kind.count(from) == kind.count(to);
         let followed = self.items().iter().filter_map(|item| {
             let name = item.name(from)?;
             let found = places.get(&(item.kind, name)).copied();
@@ -279,6 +286,6 @@ impl Selection {
 /// The group that something is in.
 fn group_of(scene: &Scene, item: Item) -> Option<&str> {
     let object = scene.objects.get(item.index);
-    let group = &object.filter(|_| item.kind == Kind::Object)?.group;
+    let group = &object.filter(|_| item.kind == ItemKind::Object)?.group;
     (!group.is_empty()).then_some(group)
 }

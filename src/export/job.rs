@@ -49,7 +49,7 @@ const LONGEST: usize = 1024;
 
 /// What [`write_job`] has written.
 #[derive(Debug)]
-pub struct Job {
+pub struct JobFiles {
     /// The scene that is rendered, beside the template.
     pub scene: PathBuf,
     /// Whether that is a copy, of its own.
@@ -68,7 +68,7 @@ pub fn write_job(
     file: Option<&Path>,
     sequence: &Sequence,
     path: &Path,
-) -> Result<Job, JobError> {
+) -> Result<JobFiles, JobError> {
     let named = file.unwrap_or(path);
     let stem = named.file_stem().unwrap_or_default().to_string_lossy();
     let has_files = document.scene.has_mesh_files();
@@ -101,7 +101,7 @@ pub fn write_job(
         replaced.push((path.to_owned(), backup));
     }
     write_text(path, &job_template(sequence, &stem, &name))?;
-    Ok(Job {
+    Ok(JobFiles {
         scene,
         is_copied,
         replaced,

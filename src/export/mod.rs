@@ -36,7 +36,7 @@ pub use error::{ExportError, VideoError};
 pub use exporting::{ExportStep, Exported, Exporting};
 pub use fingerprint::fingerprint;
 pub use frames::{Frames, FramesError};
-pub use job::{Job, JobError, write_job};
+pub use job::{JobError, JobFiles, write_job};
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};

@@ -8,7 +8,7 @@ use glam::DVec3;
 use crate::image::render;
 use crate::plan::RenderRequest;
 use crate::scene::{
-    Camera, ColorPack, Frame, Projection, Sampling, Scene, Shape, coincidences, unit,
+    Camera, ColorPack, CoordinateFrame, Projection, Sampling, Scene, Shape, coincidences, unit,
 };
 use crate::trace::RenderControl;
 
@@ -251,7 +251,7 @@ fn in_its_place<'a>(
     let HitKind::Object(later) = met.what else {
         return None;
     };
-    let frame = Frame::of(scene);
+    let frame = CoordinateFrame::of(scene);
     let centre = frame.map_or(scene.camera.position, |frame| frame.centre);
     let pairs = coincidences(&scene.objects, centre).into_iter();
     let mut earlier = pairs.filter(|pair| pair.later == later);

@@ -18,7 +18,7 @@ const MOST: usize = 24;
 
 /// What is written of a study, beside its pictures.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct KeptStudy {
     /// What was measured on: elsewhere, times are others.
     machine: String,
     width: u32,
@@ -93,7 +93,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
     }
     all.height *= 1 + dots.len();
     let (width, height) = study.size();
-    let kept = Kept {
+    let kept = KeptStudy {
         machine: machine.to_owned(),
         width,
         height,
@@ -112,7 +112,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
 /// What was measured of this scene before, on this machine; `None` if nothing was, or not in the same ways.
 pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Option<Study> {
     let (figures, pictures) = place(folder, scene)?;
-    let kept: Kept = ron::from_str(&read_text(&figures).ok()?).ok()?;
+    let kept: KeptStudy = ron::from_str(&read_text(&figures).ok()?).ok()?;
     let mut study = Study::of_side(Arc::clone(scene), side);
     if kept.dots.last().is_some_and(|dot| dot.name == POVRAY) {
         study = study.with_povray();

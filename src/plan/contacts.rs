@@ -248,7 +248,7 @@ fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
 #[cfg(test)]
 mod tests {
     use super::super::Plan;
-    use super::super::geometry::Kept;
+    use super::super::geometry::PlanCache;
     use super::*;
     use crate::primitive::Kind;
     use crate::scene::{Accelerator, Sampling, Triangle};
@@ -287,7 +287,7 @@ mod tests {
                 sampling: Sampling::ADAPTIVE,
                 ..RenderRequest::sized(64, 64)
             };
-            let plan = Plan::<f64>::new(&scene, &request, &mut Kept::default());
+            let plan = Plan::<f64>::new(&scene, &request, &mut PlanCache::default());
             let in_tree = plan.geometry.iter().map(|geometry| &geometry.primitives);
             let all = in_tree.chain([&plan.primitives]);
             let mut found: Vec<_> = all

@@ -1,7 +1,7 @@
 //! How much of a scene rays come near: what a tree of boxes spares them.
 
 use super::bvh::{Bvh, Child};
-use super::geometry::{Geometry, Kept};
+use super::geometry::{Geometry, PlanCache};
 use super::pack::Plan;
 use super::request::RenderRequest;
 use crate::primitive::{BoundingBox, Ray};
@@ -21,7 +21,7 @@ struct Tests {
 /// How many tests the tree of a scene spares the rays of `request` from the camera, as words; nothing where none is
 /// walked. Everything is counted that a ray passes, also what is behind its hit: what is spared is rather more.
 pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
-    let plan = Plan::<f64>::new(scene, request, &mut Kept::default());
+    let plan = Plan::<f64>::new(scene, request, &mut PlanCache::default());
     let geometry = plan.geometry.as_ref().filter(|_| plan.is_boxed)?;
     let all = plan.bounded();
     let mut tests = Tests::default();

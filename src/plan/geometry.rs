@@ -63,7 +63,7 @@ pub struct Geometry<R> {
 
 /// What a picture was planned from that the next one may need as well.
 #[derive(Clone, Debug, Default)]
-pub struct Kept<R> {
+pub struct PlanCache<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
     coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
@@ -76,9 +76,9 @@ pub struct Kept<R> {
 #[derive(Clone, Debug, Default)]
 pub struct Planner {
     /// For single precision.
-    pub single: Kept<f32>,
+    pub single: PlanCache<f32>,
     /// For double precision.
-    pub double: Kept<f64>,
+    pub double: PlanCache<f64>,
 }
 
 impl Planner {
@@ -133,7 +133,7 @@ impl Source {
     }
 }
 
-impl<R: Real> Kept<R> {
+impl<R: Real> PlanCache<R> {
     fn share_meshes(&mut self, other: &Self) {
         self.others = Meshes::default();
         self.others.extend(other.last_meshes());

@@ -74,7 +74,7 @@ pub use contacts::Others;
 pub use crossed::tests_spared;
 pub use culled_faces::CulledFaces;
 pub use flats::AskFlat;
-pub use geometry::{Geometry, Kept, Planner};
+pub use geometry::{Geometry, PlanCache, Planner};
 pub use hit_order::HitOrder;
 pub use lights::PointLight;
 pub use materials::{Material, Surface, exponent};

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use serde::Serialize;
 
-use super::geometry::{Kept, LARGEST_LIST, MOST_LISTED_TRIANGLES, SMALLEST_TREE};
+use super::geometry::{LARGEST_LIST, MOST_LISTED_TRIANGLES, PlanCache, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
 use super::precision::{is_filtered, is_fine, is_too_much_twice, needs_double};
@@ -35,7 +35,7 @@ pub struct Need {
 /// The decisions of the plan for `request` of `scene`, which must pass [`crate::scene::check`].
 pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
     // Meshes count; what is in them need not be made ready for that.
-    let plan = Plan::<f64>::new(&scene.abridged(), request, &mut Kept::default());
+    let plan = Plan::<f64>::new(&scene.abridged(), request, &mut PlanCache::default());
     vec![
         precision(scene, request),
         reflections(scene, &plan),

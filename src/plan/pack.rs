@@ -9,7 +9,7 @@ use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
 use super::culled_faces::CulledFaces;
 use super::flats::Flats;
-use super::geometry::{Geometry, Kept, is_planted, is_tree, material_number, measure_loose};
+use super::geometry::{Geometry, PlanCache, is_planted, is_tree, material_number, measure_loose};
 use super::hit_order::HitOrder;
 use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
@@ -24,8 +24,8 @@ use crate::primitive::{
     count_corner_users,
 };
 use crate::scene::{
-    Accelerator, Camera, Frame, LightObj, Methods, Object, Sampling, Scene, Shape, Sphere,
-    SphereMethod,
+    Accelerator, Camera, CoordinateFrame, LightObj, Methods, Object, Sampling, Scene, Shape,
+    Sphere, SphereMethod,
 };
 use crate::simd::{Real, Vec3};
 
@@ -95,7 +95,7 @@ pub struct Plan<R> {
     pub flats: Flats<R>,
     /// The largest coordinate of what ends.
     pub farthest: R,
-    /// The same without what is much farther away than most, see [`Frame`].
+    /// The same without what is much farther away than most, see [`CoordinateFrame`].
     pub extent: R,
     /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
     pub blur: Blur<R>,
@@ -111,8 +111,8 @@ const SMOOTH_MARGIN: f64 = 4.0;
 
 impl<R: Real> Plan<R> {
     /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut Kept<R>) -> Self {
-        let frame = Frame::of(scene).unwrap_or(Frame {
+    pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut PlanCache<R>) -> Self {
+        let frame = CoordinateFrame::of(scene).unwrap_or(CoordinateFrame {
             centre: scene.camera.position,
             farthest: 0.0,
             extent: 0.0,
@@ -338,7 +338,7 @@ mod tests {
 
     fn plan(scene: &Scene) -> Plan<f32> {
         let request = RenderRequest::sized(64, 64);
-        Plan::new(scene, &request, &mut Kept::default())
+        Plan::new(scene, &request, &mut PlanCache::default())
     }
 
     #[test]

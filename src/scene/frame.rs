@@ -14,7 +14,7 @@ const LOOKED_AT: usize = 1000;
 
 /// Where most of a scene is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct CoordinateFrame {
     /// Where coordinates count from.
     pub centre: DVec3,
     /// The largest coordinate of what is visible and has an end.
@@ -23,7 +23,7 @@ pub struct Frame {
     pub extent: f64,
 }
 
-impl Frame {
+impl CoordinateFrame {
     /// The middle of the box around everything visible that has an end; where a few things are so far away that it
     /// would be far from all others, the median of theirs and of the lights. `None` if nothing has an end.
     pub fn of(scene: &Scene) -> Option<Self> {
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn coordinates_count_from_the_middle_of_the_demo_also_with_a_moon() {
         let mut scene = Scene::demo();
-        let demo = Frame::of(&scene).expect("it ends");
+        let demo = CoordinateFrame::of(&scene).expect("it ends");
         let (low, high) = scene.objects_bounds().expect("it ends");
         assert_eq!(demo.centre, low * 0.5 + high * 0.5);
         assert_eq!(demo.extent, demo.farthest);
@@ -84,12 +84,12 @@ mod tests {
                 radius: 3e5,
             };
             scene.objects.push(Object::new("Moon", "sphere 1", moon));
-            let frame = Frame::of(&scene).expect("it ends");
+            let frame = CoordinateFrame::of(&scene).expect("it ends");
             assert!((frame.centre - demo.centre).length() < size, "{frame:?}");
             assert!(frame.extent < 1e5 * size, "{frame:?}");
             assert!(frame.farthest > center.length(), "{frame:?}");
         }
         scene.objects = [].into_iter().collect();
-        assert_eq!(Frame::of(&scene), None);
+        assert_eq!(CoordinateFrame::of(&scene), None);
     }
 }

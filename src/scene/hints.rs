@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, Overlap, coincidences};
 use super::direction::unit;
-use super::frame::Frame;
+use super::frame::CoordinateFrame;
 use super::object::Object;
 use super::shape::Shape;
 use super::whole::Scene;
@@ -66,7 +66,7 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
 pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
     let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
-    let extent = Frame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
+    let extent = CoordinateFrame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let eye = scene.camera.position;
     for (index, object) in visible(scene) {
         let name = &object.name;
@@ -114,7 +114,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
             add(words, About::Pack(index), false);
         }
     }
-    let centre = Frame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
+    let centre = CoordinateFrame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
     add_coincident(scene, centre, &mut add);
     hints
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use super::candidates::{Candidates, Span};
 use super::canvas::Canvas;
 use super::control::RenderControl;
-use super::engine::{Engine, Reference, Workspace};
+use super::engine::{Engine, Retracer, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
 use super::lattice::Limits;
@@ -44,7 +44,7 @@ pub struct Band<'a, R> {
     /// What its pixels are told by those beside them.
     pub messages: BandMessages<'a>,
     /// What traces again what is in doubt.
-    pub reference: Option<&'a dyn Reference>,
+    pub reference: Option<&'a dyn Retracer>,
     /// Memory of other bands of the plan.
     pub workspace_pool: &'a WorkspacePool,
     /// Tells when to stop.

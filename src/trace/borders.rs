@@ -9,7 +9,7 @@ use super::tile::Tile;
 
 /// What the pixels of a tile, and those around it, know of their sides.
 #[derive(Debug)]
-pub struct Borders {
+pub struct PixelSides {
     /// The sides that have nothing more to tell, bit by bit, row by row, with a margin of the pixels around the tile.
     known: Vec<u8>,
     /// Numbers from one row to the next.
@@ -34,7 +34,7 @@ pub enum Listener {
     Elsewhere([usize; 2]),
 }
 
-impl Borders {
+impl PixelSides {
     /// No pixels.
     pub fn new() -> Self {
         Self {
@@ -177,9 +177,9 @@ mod tests {
         };
         let messages = EdgeMessages::new(7, 0..4);
         messages.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
-        let mut borders = Borders::new();
+        let mut borders = PixelSides::new();
         borders.start(&tile, &messages);
-        let listening = |borders: &Borders, point: [u16; 2]| {
+        let listening = |borders: &PixelSides, point: [u16; 2]| {
             let side = borders.side_of(point)?;
             let pixels = side.listening.into_iter().flatten();
             Some(

@@ -8,7 +8,7 @@ use super::mixed_materials::MixedMaterials;
 use super::order::Order;
 use super::outcome::{clamped, joined, signatures_of, store};
 use super::packet::{EdgeInfo, Packet, ReflectionParent, list_doubtful};
-use super::samples::{Edges, Traced};
+use super::samples::{EdgeDetail, Traced};
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Mask as _, SimdFloat, Vec3};
 
@@ -19,7 +19,7 @@ pub struct Bounce<L: SimdFloat> {
     /// One for each packet, in bounces of mirrored rays.
     pub parents: Vec<ReflectionParent<L>>,
     /// What is found out about edges.
-    pub edges_are: Edges,
+    pub edges_are: EdgeDetail,
     /// One for each packet, where edges are noted.
     pub edges: Vec<EdgeInfo<L>>,
     /// One for each packet, where doubts are noted.
@@ -60,7 +60,7 @@ impl<L: SimdFloat> Bounce<L> {
         Self {
             packets: Vec::new(),
             parents: Vec::new(),
-            edges_are: Edges::Ignored,
+            edges_are: EdgeDetail::Ignored,
             edges: Vec::new(),
             uncertainties: Vec::new(),
             seen: Candidates::default(),
@@ -138,7 +138,7 @@ impl<L: SimdFloat> Bounce<L> {
     #[inline(always)]
     pub fn store(
         &self,
-        edges: Edges,
+        edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
         unsorted: &mut Traced<L::Real>,
     ) {

@@ -28,12 +28,12 @@ pub struct Bundle<L: SimdFloat> {
 /// What rays have in common along each axis: where they start, and which way they go.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft<R> {
-    axes: [Axis<R>; 3],
+    axes: [ShaftAxis<R>; 3],
 }
 
 /// What the rays have in common along an axis.
 #[derive(Clone, Copy, Debug)]
-struct Axis<R> {
+struct ShaftAxis<R> {
     /// 0 where all rays go upwards, which meet the lower plane of a box first; 1 downwards; `None` where
     /// they go either way.
     first: Option<usize>,
@@ -88,9 +88,9 @@ impl<L: SimdFloat> Bundle<L> {
             inverse,
             shaft: Shaft {
                 axes: [
-                    Axis::new(active, [origins[0].x, origins[1].x], inverse.x),
-                    Axis::new(active, [origins[0].y, origins[1].y], inverse.y),
-                    Axis::new(active, [origins[0].z, origins[1].z], inverse.z),
+                    ShaftAxis::new(active, [origins[0].x, origins[1].x], inverse.x),
+                    ShaftAxis::new(active, [origins[0].y, origins[1].y], inverse.y),
+                    ShaftAxis::new(active, [origins[0].z, origins[1].z], inverse.z),
                 ],
             },
             is_boxed: true,
@@ -190,7 +190,7 @@ impl<L: SimdFloat> Bundle<L> {
         let [below, above] = &self.origins;
         let axis = |below: L, above: L, inverse: L| {
             let inverse = inverse.lane(lane);
-            Axis::between([below.lane(lane), above.lane(lane)], [inverse, inverse])
+            ShaftAxis::between([below.lane(lane), above.lane(lane)], [inverse, inverse])
         };
         Shaft {
             axes: [
@@ -207,7 +207,7 @@ impl<R: Real> Shaft<R> {
     pub fn of(origins: &BoundingBox<R>, directions: &BoundingBox<R>) -> Self {
         let (lows, highs) = (origins.low.to_array(), origins.high.to_array());
         let (froms, tos) = (directions.low.to_array(), directions.high.to_array());
-        let axis = |axis: usize| Axis::of([lows[axis], highs[axis]], [froms[axis], tos[axis]]);
+        let axis = |axis: usize| ShaftAxis::of([lows[axis], highs[axis]], [froms[axis], tos[axis]]);
         Self {
             axes: [axis(0), axis(1), axis(2)],
         }
@@ -336,7 +336,7 @@ impl<R: Real> Shaft<R> {
     }
 }
 
-impl<R: Real> Axis<R> {
+impl<R: Real> ShaftAxis<R> {
     #[inline(always)]
     fn new<L: SimdFloat<Real = R>>(active: L::Mask, origins: [L; 2], inverse: L) -> Self {
         let inverse = [least(active, inverse), greatest(active, inverse)];

@@ -1,6 +1,6 @@
 //! Squares between samples, pixels and parts of them.
 
-use super::samples::Edges;
+use super::samples::EdgeDetail;
 use super::thresholds::FINEST;
 use super::tile::TileColors;
 use crate::simd::Real;
@@ -15,7 +15,7 @@ pub struct Cell {
     /// Steps of the finest grid.
     pub side: u16,
     /// What was looked for at its corners, or at those of the cell that it is a part of.
-    pub looked: Edges,
+    pub looked: EdgeDetail,
     /// Whether it is, or is a part of, one where lights may swap, see [`super::shadows`].
     pub swaps_lights: bool,
     /// Whether it may show a face of a mesh that no corner is on, or light between two of them.
@@ -31,7 +31,7 @@ impl Cell {
             x: (column * FINEST) as u16,
             y: (row * FINEST) as u16,
             side: FINEST as u16,
-            looked: Edges::Near,
+            looked: EdgeDetail::Near,
             swaps_lights: false,
             may_hide_face,
             corners: [0; 4],
@@ -41,7 +41,7 @@ impl Cell {
     /// The same, about which nobody has looked what may slip between samples, or ends near them.
     pub fn unwatched(self) -> Self {
         Self {
-            looked: Edges::Signed,
+            looked: EdgeDetail::Signed,
             ..self
         }
     }

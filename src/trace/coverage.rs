@@ -2,8 +2,8 @@
 //! either side of it; two colours are then enough.
 
 use super::cell::Cell;
-use super::crossing::{Crossing, Thing, contrast};
-use super::lattice::{Lattice, Limits, Sample};
+use super::crossing::{Crossing, EdgeSide, contrast};
+use super::lattice::{CornerSample, Lattice, Limits};
 use super::samples::THING;
 use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
 use super::tile::TileColors;
@@ -24,7 +24,7 @@ pub struct CrossedCell<R> {
     /// Which corners are on the first side of the edge, bit by bit.
     first: u8,
     /// What is seen on both sides.
-    things: [Thing<R>; 2],
+    things: [EdgeSide<R>; 2],
     crossings: [Crossing; 2],
     /// Whether it was looked whether the edge is straight, and where.
     is_checked: bool,
@@ -34,7 +34,7 @@ pub struct CrossedCell<R> {
 }
 
 /// What is known of a cell.
-pub enum Found {
+pub enum CellFinding {
     /// Not enough.
     Nothing,
     /// That it is not crossed by one straight edge.
@@ -47,7 +47,7 @@ impl<R: Real> CrossedCell<R> {
     /// The cell, if its corners say that one edge crosses it and what is seen on either side of it has one colour.
     pub fn of(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
         let limit = limits.contrast_of_same(cell.width());
-        let is_like = |a: &Sample<R>, b: &Sample<R>| a.signature == b.signature;
+        let is_like = |a: &CornerSample<R>, b: &CornerSample<R>| a.signature == b.signature;
         Self::new(cell, lattice, limits, (limit, is_like))
     }
 
@@ -56,7 +56,7 @@ impl<R: Real> CrossedCell<R> {
         let [a, b, c, d] = lattice.corners(cell);
         let apart = contrast(a, b).max(contrast(a, c)).max(contrast(a, d));
         let limit = apart * R::from_f64(UNEVEN);
-        let is_like = |a: &Sample<R>, b: &Sample<R>| contrast(a, b) <= limit;
+        let is_like = |a: &CornerSample<R>, b: &CornerSample<R>| contrast(a, b) <= limit;
         Self::new(cell, lattice, limits, (limit, is_like))
     }
 
@@ -66,7 +66,7 @@ impl<R: Real> CrossedCell<R> {
         cell: &Cell,
         lattice: &Lattice<R>,
         limits: Limits<R>,
-        (limit, is_like): (R, impl Fn(&Sample<R>, &Sample<R>) -> bool),
+        (limit, is_like): (R, impl Fn(&CornerSample<R>, &CornerSample<R>) -> bool),
     ) -> Option<Self> {
         let corners = lattice.corners(cell);
         let mut like_first = 0_u8;
@@ -84,7 +84,7 @@ impl<R: Real> CrossedCell<R> {
             Crossing::new(cell, (corner, axis), enough(cell, apart, limits))
         };
         let [(corner, axis), other] = sides;
-        let thing = |corner: usize| Thing {
+        let thing = |corner: usize| EdgeSide {
             seen: *corners[corner],
             limit,
         };
@@ -129,8 +129,8 @@ impl<R: Real> CrossedCell<R> {
     }
 
     /// Takes what was seen there. What is found goes into the colours.
-    pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> Found {
-        let disorder = Found::Disorder(self.cell.unwatched());
+    pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> CellFinding {
+        let disorder = CellFinding::Disorder(self.cell.unwatched());
         for crossing in &mut self.crossings {
             if !crossing.narrow(lattice, &self.things) {
                 return disorder;
@@ -143,17 +143,17 @@ impl<R: Real> CrossedCell<R> {
             }
         }
         if !self.crossings.iter().all(Crossing::is_found) {
-            return Found::Nothing;
+            return CellFinding::Nothing;
         }
         if !self.is_checked {
             self.is_checked = true;
             self.checks = self.beside();
             if self.checks != [None; 2] {
-                return Found::Nothing;
+                return CellFinding::Nothing;
             }
         }
         self.accumulate(self.seen(lattice, 0), self.seen(lattice, 1), colors);
-        Found::Color
+        CellFinding::Color
     }
 
     /// Points closely beside the middle of the edge, on its first side and on its second, where they say whether it
@@ -197,7 +197,7 @@ impl<R: Real> CrossedCell<R> {
     #[inline(always)]
     fn seen(&self, lattice: &Lattice<R>, side: usize) -> [R; 4] {
         let (mut sum, mut count) = ([R::ZERO; 4], 0);
-        let mut add = |sample: &Sample<R>| {
+        let mut add = |sample: &CornerSample<R>| {
             for (sum, &value) in sum.iter_mut().zip(&sample.values) {
                 *sum = *sum + value;
             }
@@ -263,7 +263,7 @@ fn enough<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::samples::{Edges, Samples, Traced};
+    use super::super::samples::{EdgeDetail, Samples, Traced};
     use super::super::tile::Tile;
     use super::*;
     use crate::scene::Sampling;
@@ -276,7 +276,7 @@ mod tests {
     /// What is seen at these places of a pixel: black, or white where it says so.
     fn see(samples: &Samples<f64>, is_white: impl Fn(f64, f64) -> bool) -> Traced<f64> {
         let mut traced = Traced::default();
-        traced.resize(samples.count, samples.count, Edges::Signed);
+        traced.resize(samples.count, samples.count, EdgeDetail::Signed);
         for index in 0..samples.count {
             let is_white = is_white(samples.x[index], samples.y[index]);
             let value = f64::from(u8::from(is_white));
@@ -313,9 +313,9 @@ mod tests {
             taken += samples.count;
             lattice.take_results(&see(&samples, &is_white));
             match crossed.take(&lattice, &mut colors) {
-                Found::Nothing => {}
-                Found::Disorder(_) => return None,
-                Found::Color => return Some((colors.channels[0][0], taken)),
+                CellFinding::Nothing => {}
+                CellFinding::Disorder(_) => return None,
+                CellFinding::Color => return Some((colors.channels[0][0], taken)),
             }
         }
     }

@@ -1,30 +1,30 @@
 //! Where an edge crosses a side of a cell: it is searched for between two samples that see different things.
 
 use super::cell::Cell;
-use super::lattice::{Lattice, Sample};
+use super::lattice::{CornerSample, Lattice};
 use super::messages::{ABOVE, BELOW, LEFT, RIGHT};
 use crate::simd::Real;
 
 /// What is seen on one side of an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Thing<R> {
+pub struct EdgeSide<R> {
     /// What a corner there has seen.
-    pub seen: Sample<R>,
+    pub seen: CornerSample<R>,
     /// How far other colours of it may be from that, summed over the channels.
     pub limit: R,
 }
 
-impl<R: Real> Thing<R> {
+impl<R: Real> EdgeSide<R> {
     /// Whether a sample has seen it.
     #[inline(always)]
-    pub fn is_in(&self, sample: &Sample<R>) -> bool {
+    pub fn is_in(&self, sample: &CornerSample<R>) -> bool {
         sample.signature == self.seen.signature && contrast(sample, &self.seen) <= self.limit
     }
 }
 
 /// The difference of what two samples have seen, summed over the channels.
 #[inline(always)]
-pub fn contrast<R: Real>(a: &Sample<R>, b: &Sample<R>) -> R {
+pub fn contrast<R: Real>(a: &CornerSample<R>, b: &CornerSample<R>) -> R {
     let mut sum = R::ZERO;
     for (&a, &b) in a.values.iter().zip(&b.values).take(3) {
         sum = sum + (a - b).abs();
@@ -130,7 +130,7 @@ impl Crossing {
     pub fn narrow<R: Real>(
         &mut self,
         lattice: &Lattice<R>,
-        [first, second]: &[Thing<R>; 2],
+        [first, second]: &[EdgeSide<R>; 2],
     ) -> bool {
         if self.is_found() {
             return true;

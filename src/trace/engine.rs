@@ -9,7 +9,7 @@ use super::cull::Scratch;
 use super::faces::note_faces;
 use super::intersect::Kernel;
 use super::outcome::clamped;
-use super::samples::{Edges, Samples, Traced};
+use super::samples::{EdgeDetail, Samples, Traced};
 use super::stats::Rays;
 use crate::plan::Show;
 use crate::simd::{Real, SimdFloat, Vec3};
@@ -33,12 +33,12 @@ struct Repeated {
 }
 
 /// What traces samples again where rounding may have decided what was seen.
-pub trait Reference: Sync {
+pub trait Retracer: Sync {
     /// Traces the samples in double precision.
     fn trace(
         &self,
         samples: &mut Samples<f64>,
-        edges: Edges,
+        edges: EdgeDetail,
         stop: &AtomicBool,
         traced: &mut Traced<f64>,
     );
@@ -61,7 +61,7 @@ pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     work: &'a mut Workspace<L>,
     /// Whether nobody wants the picture any more: the rays of one tile can take minutes.
     stop: &'a AtomicBool,
-    reference: Option<&'a dyn Reference>,
+    reference: Option<&'a dyn Retracer>,
     /// Rays traced so far.
     pub rays: Rays,
 }
@@ -72,7 +72,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
-        (stop, reference): (&'a AtomicBool, Option<&'a dyn Reference>),
+        (stop, reference): (&'a AtomicBool, Option<&'a dyn Retracer>),
     ) -> Self {
         Self {
             kernel,
@@ -98,7 +98,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         &mut self,
         samples: &Samples<L::Real>,
         seen: &Candidates,
-        edges: Edges,
+        edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
         // A function of its own: it is long, and called from several places.
@@ -110,7 +110,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         let is_anything_seen = !seen.is_empty() && !self.is_stopped();
         // Empty in most scenes, and small where it is not: beside the kernel, which is quicker without.
         traced.faces.clear();
-        if edges >= Edges::Bordered && is_anything_seen {
+        if edges >= EdgeDetail::Bordered && is_anything_seen {
             let bounce = &self.work.bounces[0];
             let packets = (&bounce.packets[..], &bounce.order.samples[..]);
             note_faces(self.kernel.plan, packets, traced);
@@ -127,9 +127,9 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     /// Traces the samples again that are in doubt.
     fn repeat(
         &mut self,
-        reference: &dyn Reference,
+        reference: &dyn Retracer,
         samples: &Samples<L::Real>,
-        edges: Edges,
+        edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
         let Workspace { bounces, again, .. } = &mut *self.work;
@@ -152,7 +152,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         &mut self,
         samples: &Samples<L::Real>,
         seen: &Candidates,
-        edges: Edges,
+        edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
         let kernel = self.kernel;
@@ -168,7 +168,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             };
             return traced.fill(count, length, edges, sky);
         }
-        let with_edges = edges != Edges::Ignored;
+        let with_edges = edges != EdgeDetail::Ignored;
         traced.resize(count, length, edges);
         self.grow(0);
         self.work.bounces[0].start(kernel, samples, seen, edges);

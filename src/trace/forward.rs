@@ -12,7 +12,7 @@ use super::footprint::RayCone;
 use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::paths::{IgnoredPrimitive, Paths, real};
-use super::samples::{Edges, Samples};
+use super::samples::{EdgeDetail, Samples};
 use super::shade::Shader;
 use super::stats::Rays;
 use super::thin_cull::may_slip;
@@ -35,7 +35,7 @@ impl<L: SimdFloat> Bounce<L> {
         kernel: Kernel<L, TREE>,
         samples: &Samples<L::Real>,
         seen: &Candidates,
-        edges: Edges,
+        edges: EdgeDetail,
     ) {
         let (token, view) = (kernel.token, &kernel.plan.view);
         self.clear();
@@ -55,13 +55,13 @@ impl<L: SimdFloat> Bounce<L> {
         // near to it, and the pixel changes by a step of the finest grid, or by what is left of a cell that is not divided.
         // That is more than a level in a pixel or some of 1 scene in 30, 7 at most; to doubt it takes meshes 1.2 times as
         // long, and a mirror with a mesh 1.4 times.
-        let is_doubted = edges != Edges::Signed && kernel.plan.is_doubted();
+        let is_doubted = edges != EdgeDetail::Signed && kernel.plan.is_doubted();
         if is_filtered::<L, TREE>() && is_doubted {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }
         self.edges_are = edges;
-        if edges != Edges::Ignored {
+        if edges != EdgeDetail::Ignored {
             let (width, spread) = view.footprint();
             let cone = RayCone {
                 width: L::splat(token, width),
@@ -73,7 +73,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Whether what may slip between samples is looked for.
     fn looks_for_thin(&self) -> bool {
-        self.edges_are == Edges::Near
+        self.edges_are == EdgeDetail::Near
     }
 
     /// What the rays of a packet start on.
@@ -272,7 +272,8 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_for_thin = self.looks_for_thin();
-        let has_gaps = self.edges_are >= Edges::Bordered && kernel.may_leave_gaps(&self.lights);
+        let has_gaps =
+            self.edges_are >= EdgeDetail::Bordered && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {

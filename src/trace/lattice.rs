@@ -2,8 +2,8 @@
 
 use super::cell::Cell;
 use super::faces::may_hide_light;
-use super::points::Points;
-use super::samples::{Edges, Samples, THING, Traced};
+use super::points::PointTable;
+use super::samples::{EdgeDetail, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::{EDGE_ERROR, FINEST, NEAR, SPREAD_OUT, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
@@ -19,7 +19,7 @@ const HIDING: u16 = (FINEST / 8) as u16;
 
 /// What was seen at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample<R> {
+pub struct CornerSample<R> {
     /// Red, green and blue, and what is near: one row, so that they are handled in step.
     pub values: [R; 4],
     /// Equal where the same is seen.
@@ -28,7 +28,7 @@ pub struct Sample<R> {
     pub shadows: u32,
 }
 
-impl<R: Real> Sample<R> {
+impl<R: Real> CornerSample<R> {
     #[inline(always)]
     fn of(traced: &Traced<R>, index: usize) -> Self {
         let [red, green, blue] = traced.channels();
@@ -44,9 +44,9 @@ impl<R: Real> Sample<R> {
 #[derive(Debug)]
 pub struct Lattice<R> {
     /// The points that have a sample or are wanted.
-    points: Points,
+    points: PointTable,
     /// In order of their points.
-    samples: Vec<Sample<R>>,
+    samples: Vec<CornerSample<R>>,
     /// The faces that the first of them are on, see [`super::faces`], in scenes with some.
     faces: Vec<u64>,
 }
@@ -137,7 +137,7 @@ impl<R: Real> Lattice<R> {
     /// No samples.
     pub fn new() -> Self {
         Self {
-            points: Points::new(),
+            points: PointTable::new(),
             samples: Vec::new(),
             faces: Vec::new(),
         }
@@ -160,7 +160,7 @@ impl<R: Real> Lattice<R> {
                 if *corner as usize == self.samples.len() {
                     let (column, row) = (x as usize / FINEST, y as usize / FINEST);
                     let number = row * (tile.width() + 1) + column;
-                    self.samples.push(Sample::of(corners, number));
+                    self.samples.push(CornerSample::of(corners, number));
                     self.faces.extend(corners.faces.get(number));
                 }
             }
@@ -188,7 +188,7 @@ impl<R: Real> Lattice<R> {
     /// Adds what was seen at the points that were wanted last.
     #[inline(always)]
     pub fn take_results(&mut self, traced: &Traced<R>) {
-        let new = (0..traced.count).map(|index| Sample::of(traced, index));
+        let new = (0..traced.count).map(|index| CornerSample::of(traced, index));
         self.samples.extend(new);
         let faces = traced.faces.iter().take(traced.count);
         self.faces.extend(faces);
@@ -233,13 +233,13 @@ impl<R: Real> Lattice<R> {
 
     /// A sample by its index.
     #[inline(always)]
-    pub fn sample(&self, index: u32) -> &Sample<R> {
+    pub fn sample(&self, index: u32) -> &CornerSample<R> {
         &self.samples[index as usize]
     }
 
     /// The samples at the corners of a cell. Written out: mapping an array is a call there.
     #[inline(always)]
-    pub fn corners(&self, cell: &Cell) -> [&Sample<R>; 4] {
+    pub fn corners(&self, cell: &Cell) -> [&CornerSample<R>; 4] {
         let [a, b, c, d] = cell.corners;
         let at = |corner: u32| &self.samples[corner as usize];
         [at(a), at(b), at(c), at(d)]
@@ -251,7 +251,7 @@ impl<R: Real> Lattice<R> {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
-        cell.looked == Edges::Near && least < R::from_f64(NEAR * cell.width())
+        cell.looked == EdgeDetail::Near && least < R::from_f64(NEAR * cell.width())
     }
 
     /// What must be known of a cell.
@@ -269,7 +269,7 @@ impl<R: Real> Lattice<R> {
         }
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
         if cell.may_hide_face
-            || (is_one && Edges::Bordered <= cell.looked && may_leave_gap(shadows))
+            || (is_one && EdgeDetail::Bordered <= cell.looked && may_leave_gap(shadows))
         {
             return Inside::Anything;
         }
@@ -312,7 +312,7 @@ impl<R: Real> Lattice<R> {
     pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
         let [a, b, c, d] = self.corners(pixel);
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        Edges::Bordered <= pixel.looked && shadows != [0; 4] && may_swap_lights(shadows)
+        EdgeDetail::Bordered <= pixel.looked && shadows != [0; 4] && may_swap_lights(shadows)
     }
 
     /// Makes sure that there will be a sample in the middle of a cell: its index.
@@ -412,7 +412,7 @@ mod tests {
         };
         let traced = |levels: &[f64]| {
             let mut traced = Traced::default();
-            traced.resize(levels.len(), levels.len(), Edges::Signed);
+            traced.resize(levels.len(), levels.len(), EdgeDetail::Signed);
             traced.red.copy_from_slice(levels);
             traced.green.fill(0.0);
             traced.blue.fill(0.0);

@@ -6,14 +6,14 @@ const LEAST_SLOTS: u32 = 1 << 9;
 /// Points of a grid and their numbers: a table with open addresses (Knuth, "The Art of Computer Programming", vol. 3,
 /// 6.4, algorithm L), which is small enough for the first cache where an array of the whole grid is not.
 #[derive(Debug)]
-pub struct Points {
+pub struct PointTable {
     /// Column and row.
     places: Vec<[u16; 2]>,
     /// A point in the upper half, 1 + its number in the lower half; 0 where there is none. A power of two of them.
     slots: Vec<u64>,
 }
 
-impl Points {
+impl PointTable {
     /// None.
     pub fn new() -> Self {
         Self {
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_point_has_one_number() {
-        let mut points = Points::new();
+        let mut points = PointTable::new();
         for _ in 0..2 {
             for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x * 32, y * 32))) {
                 let number = u32::from(y / 32 * 90 + x / 32);

@@ -1,12 +1,12 @@
 //! The cells of a tile whose insides are looked at. What becomes of them is decided one by one, not in lanes: it is
 //! compiled once for each precision, and not for every width of vectors.
 
-use super::borders::{Borders, Listener};
+use super::borders::{Listener, PixelSides};
 use super::cell::Cell;
-use super::coverage::{CrossedCell, Found};
+use super::coverage::{CellFinding, CrossedCell};
 use super::lattice::{Inside, Lattice, Limits};
 use super::messages::{ALL, EdgeMessages};
-use super::samples::{Edges, Samples, Traced};
+use super::samples::{EdgeDetail, Samples, Traced};
 use super::thresholds::{FINEST, TELLING};
 use super::tile::{Tile, TileColors};
 use crate::simd::Real;
@@ -28,7 +28,7 @@ pub struct Refinement<R> {
     /// Cells that may be even, and the samples in their middles.
     even: Vec<(Cell, u32)>,
     /// What the pixels know of their sides.
-    borders: Borders,
+    borders: PixelSides,
     /// Samples of which it was seen what they tell of the pixels beside them.
     received: usize,
     /// Pixels that were told something and are not divided yet.
@@ -51,7 +51,7 @@ impl<R: Real> Refinement<R> {
             split: Vec::new(),
             crossed: Vec::new(),
             even: Vec::new(),
-            borders: Borders::new(),
+            borders: PixelSides::new(),
             received: 0,
             to_divide: Vec::new(),
             notified: Vec::new(),
@@ -145,7 +145,7 @@ impl<R: Real> Refinement<R> {
             !is_near
         });
         for pixel in &mut self.split {
-            pixel.looked = Edges::Bordered;
+            pixel.looked = EdgeDetail::Bordered;
         }
     }
 
@@ -192,9 +192,9 @@ impl<R: Real> Refinement<R> {
         let (lattice, split) = (&self.lattice, &mut self.split);
         self.crossed
             .retain_mut(|cell| match cell.take(lattice, colors) {
-                Found::Nothing => true,
-                Found::Color => false,
-                Found::Disorder(cell) => {
+                CellFinding::Nothing => true,
+                CellFinding::Color => false,
+                CellFinding::Disorder(cell) => {
                     split.push(cell);
                     false
                 }

@@ -3,16 +3,16 @@
 use std::sync::atomic::AtomicBool;
 
 use super::candidates::Candidates;
-use super::engine::{Engine, Reference, Workspace};
+use super::engine::{Engine, Retracer, Workspace};
 use super::intersect::Kernel;
-use super::samples::{Edges, Samples, Traced};
+use super::samples::{EdgeDetail, Samples, Traced};
 use super::workspace_pool::WorkspacePool;
 use crate::plan::Plan;
 use crate::simd::{Level, SimdFloat, WithSimd};
 
 /// The same picture in double precision.
 #[derive(Debug)]
-pub struct DoubleReference {
+pub struct DoublePrecision {
     plan: Box<Plan<f64>>,
     /// Everything that can be seen.
     seen: Candidates,
@@ -20,7 +20,7 @@ pub struct DoubleReference {
     workspace_pool: WorkspacePool,
 }
 
-impl DoubleReference {
+impl DoublePrecision {
     /// What traces samples of a plan.
     pub fn new(plan: Box<Plan<f64>>, level: Level) -> Self {
         Self {
@@ -32,11 +32,11 @@ impl DoubleReference {
     }
 }
 
-impl Reference for DoubleReference {
+impl Retracer for DoublePrecision {
     fn trace(
         &self,
         samples: &mut Samples<f64>,
-        edges: Edges,
+        edges: EdgeDetail,
         stop: &AtomicBool,
         traced: &mut Traced<f64>,
     ) {
@@ -52,9 +52,9 @@ impl Reference for DoubleReference {
 
 /// Samples to be traced.
 struct Retrace<'a> {
-    exact: &'a DoubleReference,
+    exact: &'a DoublePrecision,
     samples: &'a mut Samples<f64>,
-    edges: Edges,
+    edges: EdgeDetail,
     stop: &'a AtomicBool,
     traced: &'a mut Traced<f64>,
 }
@@ -64,7 +64,7 @@ impl WithSimd<f64> for Retrace<'_> {
 
     #[inline(always)]
     fn run<L: SimdFloat<Real = f64>>(self, token: L::Token) {
-        let DoubleReference {
+        let DoublePrecision {
             plan,
             seen,
             workspace_pool,

@@ -8,7 +8,7 @@ use super::faces::may_hide_face;
 use super::lattice::{Limits, range};
 use super::messages::EdgeMessages;
 use super::refinement::Refinement;
-use super::samples::{Edges, Samples, THING, Traced};
+use super::samples::{EdgeDetail, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
@@ -74,7 +74,7 @@ impl<L: SimdFloat> Sampler<L> {
             self.samples.push(centre(column), centre(row));
         }
         self.samples.pad(L::WIDTH);
-        engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
+        engine.trace(&self.samples, seen, EdgeDetail::Ignored, &mut self.traced);
         &self.traced
     }
 
@@ -89,7 +89,7 @@ impl<L: SimdFloat> Sampler<L> {
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
         let pixels = (tile.columns.clone(), tile.rows.clone());
-        self.trace(engine, seen, pixels, ((x, y), Edges::Ignored));
+        self.trace(engine, seen, pixels, ((x, y), EdgeDetail::Ignored));
         &self.traced
     }
 
@@ -100,7 +100,7 @@ impl<L: SimdFloat> Sampler<L> {
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         (columns, rows): (Range<usize>, Range<usize>),
-        ((x, y), edges): ((f64, f64), Edges),
+        ((x, y), edges): ((f64, f64), EdgeDetail),
     ) {
         let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + whole_steps(off));
         self.columns.clear();
@@ -168,9 +168,9 @@ impl<L: SimdFloat> Sampler<L> {
         // thinner than their quarters is met by some sample nearby, or shows too little. Where nothing thin is near the
         // corners of a pixel, there is nothing in it either.
         self.refinement.divide_near();
-        self.look(engine, seen, tile, Edges::Near);
+        self.look(engine, seen, tile, EdgeDetail::Near);
         self.refinement.divide();
-        self.look(engine, seen, tile, Edges::Bordered);
+        self.look(engine, seen, tile, EdgeDetail::Bordered);
         self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
@@ -207,7 +207,12 @@ impl<L: SimdFloat> Sampler<L> {
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
-        self.trace(engine, seen, (columns, rows), ((0.0, 0.0), Edges::Near));
+        self.trace(
+            engine,
+            seen,
+            (columns, rows),
+            ((0.0, 0.0), EdgeDetail::Near),
+        );
         std::mem::swap(&mut self.traced, &mut self.corners);
     }
 
@@ -223,7 +228,7 @@ impl<L: SimdFloat> Sampler<L> {
     ) {
         loop {
             while self.refinement.want() {
-                self.look(engine, seen, tile, Edges::Signed);
+                self.look(engine, seen, tile, EdgeDetail::Signed);
                 self.refinement.settle(limits, colors);
             }
             let corners = (&self.corners, messages);
@@ -266,7 +271,7 @@ impl<L: SimdFloat> Sampler<L> {
                 }
             }
             self.samples.pad(L::WIDTH);
-            engine.trace(&self.samples, seen, Edges::Ignored, &mut self.traced);
+            engine.trace(&self.samples, seen, EdgeDetail::Ignored, &mut self.traced);
             for (number, &[row, column]) in pixels.iter().enumerate() {
                 let own = number * count..(number + 1) * count;
                 let pixel = row * colors.stride + column;
@@ -286,7 +291,7 @@ impl<L: SimdFloat> Sampler<L> {
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
         tile: &Tile,
-        edges: Edges,
+        edges: EdgeDetail,
     ) {
         self.refinement.wanted_samples(tile, &mut self.samples);
         self.samples.pad(L::WIDTH);

@@ -7,7 +7,7 @@ use crate::simd::{Real, Vec3};
 
 /// What a trace finds out about its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Edges {
+pub enum EdgeDetail {
     /// Colours alone.
     Ignored,
     /// Also signatures, which tell edges.
@@ -47,7 +47,7 @@ pub struct Traced<R> {
     pub near: Vec<R>,
     /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
-    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`Edges::Bordered`].
+    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`EdgeDetail::Bordered`].
     pub faces: Vec<u64>,
 }
 
@@ -166,20 +166,20 @@ impl<R: Real> Traced<R> {
     }
 
     /// What was seen at these samples becomes what was seen in double precision.
-    pub fn replace(&mut self, places: &[u32], seen: &Traced<f64>, edges: Edges) {
+    pub fn replace(&mut self, places: &[u32], seen: &Traced<f64>, edges: EdgeDetail) {
         let columns = [
             (&mut self.red, &seen.red),
             (&mut self.green, &seen.green),
             (&mut self.blue, &seen.blue),
             (&mut self.near, &seen.near),
         ];
-        let noted = if edges == Edges::Ignored { 3 } else { 4 };
+        let noted = if edges == EdgeDetail::Ignored { 3 } else { 4 };
         for (to, from) in columns.into_iter().take(noted) {
             for (&index, &number) in places.iter().zip(from) {
                 to[index as usize] = R::from_f64(number);
             }
         }
-        if edges != Edges::Ignored {
+        if edges != EdgeDetail::Ignored {
             for (&index, &signature) in places.iter().zip(&seen.signature) {
                 self.signature[index as usize] = signature;
             }
@@ -205,7 +205,7 @@ impl<R: Real> Traced<R> {
     }
 
     /// Becomes so many views of nothing but this colour.
-    pub fn fill(&mut self, count: usize, length: usize, edges: Edges, color: Vec3<R>) {
+    pub fn fill(&mut self, count: usize, length: usize, edges: EdgeDetail, color: Vec3<R>) {
         self.resize(count, length, edges);
         self.red.fill(color.x);
         self.green.fill(color.y);
@@ -216,12 +216,16 @@ impl<R: Real> Traced<R> {
     }
 
     /// Makes room for so many samples, `length` with those that fill the last packet up.
-    pub fn resize(&mut self, count: usize, length: usize, edges: Edges) {
+    pub fn resize(&mut self, count: usize, length: usize, edges: EdgeDetail) {
         self.count = count;
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             column.resize(length, R::ZERO);
         }
-        let noted = if edges == Edges::Ignored { 0 } else { length };
+        let noted = if edges == EdgeDetail::Ignored {
+            0
+        } else {
+            length
+        };
         self.near.resize(noted, R::ZERO);
         self.signature.resize(noted, 0);
         self.shadows.resize(noted, 0);

@@ -116,7 +116,7 @@ mod tests {
 
     use super::*;
     use crate::mesh::SOLIDS;
-    use crate::plan::{Kept, Plan, RenderRequest};
+    use crate::plan::{Plan, PlanCache, RenderRequest};
     use crate::scene::{Mesh, Object, Scene, Shape};
     use crate::simd::Vec3;
 
@@ -144,7 +144,7 @@ mod tests {
         .into_iter()
         .collect();
         let request = RenderRequest::sized(1, 1);
-        let plan: Plan<f64> = Plan::new(&scene, &request, &mut Kept::default());
+        let plan: Plan<f64> = Plan::new(&scene, &request, &mut PlanCache::default());
         let geometry = plan.geometry.as_deref().expect("meshes");
         let is_close = |x: f64, width: f64| {
             // Along all axes, so that all of them have something in common.

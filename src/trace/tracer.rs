@@ -11,9 +11,9 @@ use super::band::Band;
 use super::candidates::Candidates;
 use super::canvas::Pixels;
 use super::control::RenderControl;
-use super::engine::Reference;
+use super::engine::Retracer;
 use super::messages::{BandMessages, EdgeMessages};
-use super::retrace::DoubleReference;
+use super::retrace::DoublePrecision;
 use super::stats::Rays;
 use super::threads::Threads;
 use super::tile::{Grid, Pass, Pixel};
@@ -63,7 +63,7 @@ pub struct Tracer {
     level: Level,
     plan: PlanOf,
     /// What traces again what single precision leaves in doubt.
-    exact: Option<DoubleReference>,
+    exact: Option<DoublePrecision>,
     workspace_pool: WorkspacePool,
 }
 
@@ -108,7 +108,7 @@ impl Tracer {
             plan.doubt();
             (
                 PlanOf::Single(plan),
-                Some(DoubleReference::new(exact, level)),
+                Some(DoublePrecision::new(exact, level)),
             )
         } else {
             (PlanOf::Single(in_single()), None)
@@ -279,7 +279,7 @@ impl Tracer {
             grid,
             sampling,
             messages,
-            reference: self.exact.as_ref().map(|exact| exact as &dyn Reference),
+            reference: self.exact.as_ref().map(|exact| exact as &dyn Retracer),
             workspace_pool: &self.workspace_pool,
             control,
         })

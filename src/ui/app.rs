@@ -16,7 +16,7 @@ use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::{Layout, keep_readable};
-use super::number::{Drag, dragged, take_refused};
+use super::number::{DragStep, dragged, take_refused};
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -347,9 +347,9 @@ impl eframe::App for App {
         }
         match dragged(&ctx) {
             // What was typed before is a step of its own, also where the button that ended it is down since.
-            Some(Drag::Begins) => out.actions.insert(0, Action::BeginGesture),
-            Some(Drag::IsGivenUp) => out.actions.push(Action::CancelGesture),
-            Some(Drag::GoesOn) | None => {}
+            Some(DragStep::Begins) => out.actions.insert(0, Action::BeginGesture),
+            Some(DragStep::IsGivenUp) => out.actions.push(Action::CancelGesture),
+            Some(DragStep::GoesOn) | None => {}
         }
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);

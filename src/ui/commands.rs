@@ -7,7 +7,7 @@ use egui::{Event, Key, KeyboardShortcut, Modifiers, Theme, Ui};
 use glam::DVec3;
 
 use super::dialogs::Ask;
-use super::layout::Part;
+use super::layout::WindowPart;
 use crate::animate::{Preset, Retime};
 use crate::scene::Aspect;
 
@@ -125,7 +125,7 @@ pub enum Command {
     /// What of the light the live view shows.
     Aspect(Aspect),
     /// Show or hide this part of the window.
-    Part(Part),
+    Part(WindowPart),
     /// Show or hide the timeline.
     Timeline,
     /// Show or hide the lab.

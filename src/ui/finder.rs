@@ -12,12 +12,12 @@ use super::add::Addition;
 use super::commands::{self, Command, Next, Zoom, name_of};
 use super::dialogs::Ask;
 use super::hint::Hinted as _;
-use super::layout::Part;
+use super::layout::WindowPart;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::animate::{Preset, Retime};
-use crate::editor::{Editor, Item, Kind, Selection};
+use crate::editor::{Editor, Item, ItemKind, Selection};
 use crate::scene::{Aspect, EXAMPLES};
 
 /// Width of the window in points.
@@ -274,11 +274,11 @@ fn choices<'a>(
         let name = format!("Show: {}", name.to_lowercase());
         (Command::Aspect(aspect), name)
     });
-    let panels = Part::PANELS.map(|(part, name)| {
+    let panels = WindowPart::PANELS.map(|(part, name)| {
         let name = format!("Show or hide the panel: {}", name.to_lowercase());
         (Command::Part(part), name)
     });
-    let parts = Part::OVER_PICTURE.map(|(part, name)| {
+    let parts = WindowPart::OVER_PICTURE.map(|(part, name)| {
         let name = format!("Show or hide: {}", name.to_lowercase());
         (Command::Part(part), name)
     });
@@ -328,7 +328,7 @@ fn worn_by_selected(editor: &Editor) -> Option<Item> {
     let (scene, item) = (editor.scene(), editor.selection().item()?);
     let worn = item
         .color_pack(scene)
-        .filter(|_| item.kind == Kind::Object)?;
+        .filter(|_| item.kind == ItemKind::Object)?;
     scene.color_packs.get_index_of(worn).map(Item::pack)
 }
 

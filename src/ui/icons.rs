@@ -19,7 +19,7 @@ pub use egui_material_icons::icons::{
 
 use super::hint::Hinted as _;
 use super::theme::{GRID, ICON};
-use crate::editor::{Item, Kind};
+use crate::editor::{Item, ItemKind};
 use crate::scene::{Scene, Shape};
 
 /// The symbol of a shape.
@@ -51,11 +51,11 @@ pub fn button(ui: &mut Ui, icon: MaterialIcon, name: &str) -> Response {
 /// The symbol of an item.
 pub fn of_item(scene: &Scene, item: Item) -> MaterialIcon {
     match item.kind {
-        Kind::Light => LIGHT,
-        Kind::Object => {
+        ItemKind::Light => LIGHT,
+        ItemKind::Object => {
             let object = scene.objects.get(item.index);
             object.map_or(SPHERE, |object| of_shape(&object.shape))
         }
-        Kind::Pack => PACK,
+        ItemKind::Pack => PACK,
     }
 }

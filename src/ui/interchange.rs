@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::dialogs::Ask;
 use crate::animate::{from_table, from_text, to_table, to_text};
 use crate::editor::{Action, Edit, Editor, Item, Selection, free_group_name, replaced_flight};
-use crate::export::{Job, Pattern, Sequence, povray_text, write_job, write_text};
+use crate::export::{JobFiles, Pattern, Sequence, povray_text, write_job, write_text};
 use crate::files::{has_ending, is_same_file};
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
@@ -100,7 +100,7 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 /// The template of a job, and the scene as it is now beside it.
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
-        Ok(Job {
+        Ok(JobFiles {
             scene,
             is_copied,
             replaced,
@@ -121,7 +121,7 @@ pub fn export_job(editor: &mut Editor, path: &Path) {
     }
 }
 
-fn write(editor: &Editor, path: &Path) -> Result<Job, Box<dyn Error>> {
+fn write(editor: &Editor, path: &Path) -> Result<JobFiles, Box<dyn Error>> {
     let own = editor.path();
     let beside = path.with_extension("ron");
     let is_taken = editor.is_dirty() && !editor.scene().has_mesh_files();

@@ -40,7 +40,7 @@ pub struct Layout {
 
 /// A part of the window that is shown or hidden without a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum WindowPart {
     /// The panel on the left.
     Outliner,
     /// The panel on the right.
@@ -53,7 +53,7 @@ pub enum Part {
     Shot,
 }
 
-impl Part {
+impl WindowPart {
     /// The panels, with their names.
     pub const PANELS: [(Self, &'static str); 2] =
         [(Self::Outliner, "Outliner"), (Self::Inspector, "Inspector")];
@@ -72,13 +72,13 @@ impl Layout {
     }
 
     /// Whether a part of the window is shown.
-    pub fn part(&mut self, part: Part) -> &mut bool {
+    pub fn part(&mut self, part: WindowPart) -> &mut bool {
         match part {
-            Part::Outliner => &mut self.outliner,
-            Part::Inspector => &mut self.inspector,
-            Part::Histogram => &mut self.histogram,
-            Part::Flight => &mut self.flight,
-            Part::Shot => &mut self.shot,
+            WindowPart::Outliner => &mut self.outliner,
+            WindowPart::Inspector => &mut self.inspector,
+            WindowPart::Histogram => &mut self.histogram,
+            WindowPart::Flight => &mut self.flight,
+            WindowPart::Shot => &mut self.shot,
         }
     }
 }

@@ -12,7 +12,7 @@ use super::examples::Examples;
 use super::flying::{FASTEST, SLOWEST};
 use super::hint::Hinted as _;
 use super::icons;
-use super::layout::{Below, Layout, Part};
+use super::layout::{Below, Layout, WindowPart};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
 use super::number::{Field, lone};
 use super::obstacles::is_enabled;
@@ -159,7 +159,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     });
     ui.menu_button("Panels", |ui| panel_entries(ui, layout, out));
     ui.separator();
-    part_entries(ui, layout, &Part::OVER_PICTURE, out);
+    part_entries(ui, layout, &WindowPart::OVER_PICTURE, out);
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     SubMenuButton::new("Flying speed")
         .config(stays)
@@ -187,7 +187,12 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     theme_choice(ui, out);
 }
 
-fn part_entries(ui: &mut Ui, layout: &mut Layout, parts: &[(Part, &str)], out: &mut UiRequests) {
+fn part_entries(
+    ui: &mut Ui,
+    layout: &mut Layout,
+    parts: &[(WindowPart, &str)],
+    out: &mut UiRequests,
+) {
     for &(part, name) in parts {
         if ticked(ui, *layout.part(part), name, None).clicked() {
             out.commands.push(Command::Part(part));
@@ -196,7 +201,7 @@ fn part_entries(ui: &mut Ui, layout: &mut Layout, parts: &[(Part, &str)], out: &
 }
 
 fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
-    part_entries(ui, layout, &Part::PANELS, out);
+    part_entries(ui, layout, &WindowPart::PANELS, out);
     for (is_on, name, command) in [
         (
             layout.below == Below::Timeline,

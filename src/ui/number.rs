@@ -50,12 +50,12 @@ struct LastDrag {
     frame: u64,
     /// What it was before.
     start: f64,
-    stage: Drag,
+    stage: DragStep,
 }
 
 /// How far the drag of a number is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drag {
+pub enum DragStep {
     /// This frame is its first.
     Begins,
     /// It goes on.
@@ -82,9 +82,9 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     let start = last.map_or(value, |last| last.start);
     if response.dragged() || is_given_up {
         let stage = match last {
-            _ if is_given_up => Drag::IsGivenUp,
-            None => Drag::Begins,
-            Some(_) => Drag::GoesOn,
+            _ if is_given_up => DragStep::IsGivenUp,
+            None => DragStep::Begins,
+            Some(_) => DragStep::GoesOn,
         };
         let drag = LastDrag {
             number: response.id,
@@ -98,7 +98,7 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
 }
 
 /// How far the drag of a number is, if one is dragged in this frame.
-pub fn dragged(ctx: &Context) -> Option<Drag> {
+pub fn dragged(ctx: &Context) -> Option<DragStep> {
     let last: LastDrag = ctx.data(|data| data.get_temp(last_drag_id()))?;
     (last.frame == ctx.cumulative_frame_nr()).then_some(last.stage)
 }

@@ -2,7 +2,7 @@
 
 use super::commands::Command;
 use super::dialogs::Ask;
-use crate::editor::{Editor, Item, Kind, Selection};
+use crate::editor::{Editor, Item, ItemKind, Selection};
 use crate::scene::{Scene, Shape};
 
 /// Why the command would do nothing now, if so.
@@ -28,7 +28,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         Command::Join => {
             // Lights that are selected as well stay what they are.
             let scene = editor.scene();
-            let items = editor.selection().of_kind(Kind::Object);
+            let items = editor.selection().of_kind(ItemKind::Object);
             let mut shapes = items.iter().map(|item| shape_of(scene, *item));
             let can = match items.len() {
                 1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
@@ -54,12 +54,12 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         }
         Command::Group | Command::PutDown => {
             let mut items = editor.selection().items().iter();
-            let has = items.any(|item| item.kind == Kind::Object);
+            let has = items.any(|item| item.kind == ItemKind::Object);
             (!has).then_some("no object is selected")
         }
         Command::Ungroup => {
             let items = editor.selection().items().iter();
-            let mut objects = items.filter(|item| item.kind == Kind::Object);
+            let mut objects = items.filter(|item| item.kind == ItemKind::Object);
             let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
             let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
             (!has).then_some("nothing in a group is selected")
@@ -110,8 +110,8 @@ pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
 
 fn shape_of(scene: &Scene, item: Item) -> Option<&Shape> {
     let object = match item.kind {
-        Kind::Object => scene.objects.get(item.index)?,
-        Kind::Light | Kind::Pack => return None,
+        ItemKind::Object => scene.objects.get(item.index)?,
+        ItemKind::Light | ItemKind::Pack => return None,
     };
     Some(&object.shape)
 }

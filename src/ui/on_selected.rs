@@ -1,6 +1,6 @@
 //! What commands do to everything that is selected.
 
-use crate::editor::{Action, Arrangement, Edit, Editor, Item, Kind, Selection, excerpt};
+use crate::editor::{Action, Arrangement, Edit, Editor, Item, ItemKind, Selection, excerpt};
 use crate::scene::Scene;
 use crate::words::counted;
 
@@ -23,7 +23,7 @@ pub fn toggle_visible(editor: &mut Editor) {
 
 /// The selected objects, or a triangle and all that share corners with it.
 pub fn joined(editor: &Editor) -> Vec<usize> {
-    let selected = editor.selection().places(Kind::Object);
+    let selected = editor.selection().places(ItemKind::Object);
     match selected[..] {
         [triangle] => editor.scene().connected_triangles(triangle),
         _ => selected,
@@ -34,7 +34,7 @@ pub fn joined(editor: &Editor) -> Vec<usize> {
 pub fn with_same_pack(scene: &Scene, item: Item) -> Selection {
     let pack = item.color_pack(scene);
     let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
-    let others = wearing.filter(|other| other.kind == Kind::Object && *other != item);
+    let others = wearing.filter(|other| other.kind == ItemKind::Object && *other != item);
     // What was selected stays so, and is what the inspector shows.
     let own = Some(item);
     Selection::all(others.chain(own))
@@ -53,7 +53,7 @@ pub fn delete(editor: &mut Editor) {
 /// Makes a copy of each of several things that are selected.
 pub fn duplicate_all(editor: &mut Editor) {
     let mut items = editor.selection().items().to_vec();
-    if items.iter().any(|item| item.kind != Kind::Pack) {
+    if items.iter().any(|item| item.kind != ItemKind::Pack) {
         let part = excerpt(editor.scene(), editor.selection());
         let paste = Edit::Paste(Box::new(part), "Duplicate");
         return editor.apply(Action::Edit(paste));
@@ -75,8 +75,8 @@ pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
     let (scene, selection) = (editor.scene(), editor.selection());
     let item = selection.item()?;
     match item.kind {
-        Kind::Object => {
-            let moved = selection.places(Kind::Object);
+        ItemKind::Object => {
+            let moved = selection.places(ItemKind::Object);
             Arrangement::step(&scene.objects, &moved, is_down).map(Edit::Arrange)
         }
         kind => {

@@ -43,7 +43,7 @@ pub struct Watch {
     /// What was not there at the last look.
     missing: Option<PathBuf>,
     /// The objects that were looked at last, and the files of their meshes.
-    shown: Option<(List<Object>, Vec<MeshFile>)>,
+    shown: Option<(List<Object>, Vec<WatchedMesh>)>,
     /// What marked those files at the last look, and when they were last to be read.
     seen: HashMap<PathBuf, [Option<Marks>; 2]>,
 }
@@ -154,7 +154,7 @@ impl Watch {
         let is_other = |(of, _): &(List<Object>, _)| !of.is_same(objects);
         if self.shown.as_ref().is_none_or(is_other) {
             let files = editor.scene().mesh_files().into_iter();
-            let files = files.map(|(folder, path, read)| MeshFile {
+            let files = files.map(|(folder, path, read)| WatchedMesh {
                 folder: folder.to_owned(),
                 path: path.to_owned(),
                 read,
@@ -206,7 +206,7 @@ pub fn forget_lost(editor: &mut Editor) {
 }
 
 /// A file that meshes refer to.
-struct MeshFile {
+struct WatchedMesh {
     folder: PathBuf,
     path: String,
     /// What marked it when it was read.
@@ -218,7 +218,7 @@ type Watched = (PathBuf, Option<Marks>);
 /// What marks a file now, the file, and what marked it when its mesh was read.
 type Marked = (Option<Marks>, PathBuf, Option<Marks>);
 
-impl MeshFile {
+impl WatchedMesh {
     fn full(&self) -> PathBuf {
         self.folder.join(&self.path)
     }

@@ -2,7 +2,7 @@
 
 use egui::Response;
 
-use crate::editor::{Edit, Editor, Item, Kind};
+use crate::editor::{Edit, Editor, Item, ItemKind};
 use crate::scene::{Light, Object};
 
 /// The pack that was dropped on a widget.
@@ -10,7 +10,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
     let dropped = response.dnd_release_payload::<Item>();
     dropped
         .map(|item| *item)
-        .filter(|item| item.kind == Kind::Pack)
+        .filter(|item| item.kind == ItemKind::Pack)
 }
 
 /// The change that makes an object or the marker of a light wear a pack; all that is selected, if it is among it.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use indexmap::IndexMap;
 
-use crate::editor::{Edit, Kind, Selection};
+use crate::editor::{Edit, ItemKind, Selection};
 use crate::lab::meet;
 use crate::scene::{Scene, Shape, around};
 
@@ -87,7 +87,7 @@ fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
     }
     let mut bodies = Vec::new();
     let mut groups: IndexMap<&str, Vec<usize>> = IndexMap::new();
-    for index in selected.places(Kind::Object) {
+    for index in selected.places(ItemKind::Object) {
         match scene.objects[index].group.as_str() {
             "" => bodies.push(vec![index]),
             group => groups.entry(group).or_default().push(index),

@@ -18,23 +18,23 @@ use crate::scene::format_number;
 use crate::words::quoted;
 
 /// A stack of rows that remembers which field was changed.
-pub struct Rows<'u> {
+pub struct FieldRows<'u> {
     /// Where the rows go.
     pub ui: &'u mut Ui,
     changed: Option<&'static str>,
-    chosen: Option<Chosen>,
+    chosen: Option<EditedPart>,
 }
 
 /// A value that was chosen by hand, whether or not it was another one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chosen {
+pub struct EditedPart {
     /// The field.
     pub field: &'static str,
     /// Which of three numbers; `None` for all of them, or the only one.
     pub part: Option<usize>,
 }
 
-impl<'u> Rows<'u> {
+impl<'u> FieldRows<'u> {
     /// No rows yet.
     pub fn new(ui: &'u mut Ui) -> Self {
         let (changed, chosen) = (None, None);
@@ -51,7 +51,7 @@ impl<'u> Rows<'u> {
     }
 
     /// What was chosen in this frame – picked, confirmed with Enter, or brought back –, if something was.
-    pub fn chosen(&self) -> Option<Chosen> {
+    pub fn chosen(&self) -> Option<EditedPart> {
         self.chosen
     }
 
@@ -92,7 +92,7 @@ impl<'u> Rows<'u> {
         self.note(field.name, *value != before);
         if is_chosen {
             let (field, part) = (field.name, None);
-            self.chosen = Some(Chosen { field, part });
+            self.chosen = Some(EditedPart { field, part });
         }
     }
 
@@ -100,7 +100,7 @@ impl<'u> Rows<'u> {
     pub fn vector(&mut self, field: &Field, default: DVec3, value: &mut DVec3) {
         let (before, mut chosen) = (*value, None);
         row(self.ui, field, &format_vec3(default), |ui, reset| {
-            let part_of = |part| Chosen {
+            let part_of = |part| EditedPart {
                 field: field.name,
                 part,
             };
@@ -158,7 +158,7 @@ impl<'u> Rows<'u> {
             speed: Some(1.0),
         };
         let (mut changed, mut chosen) = (name, None);
-        let all = Chosen {
+        let all = EditedPart {
             field: name,
             part: None,
         };
@@ -185,7 +185,7 @@ impl<'u> Rows<'u> {
                 };
                 if drag(ui, &number, part) {
                     let part = Some(index);
-                    chosen = Some(Chosen { field: name, part });
+                    chosen = Some(EditedPart { field: name, part });
                 }
                 if *part != own {
                     changed = name;
@@ -250,7 +250,7 @@ impl<'u> Rows<'u> {
             *value = option;
             self.note(name, changed);
             let part = None;
-            self.chosen = Some(Chosen { field: name, part });
+            self.chosen = Some(EditedPart { field: name, part });
         }
     }
 }

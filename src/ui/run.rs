@@ -18,7 +18,7 @@ use super::requests::UiRequests;
 use super::timeline::actions;
 use super::tools::{axis_camera, framing_camera, is_selected_unseen, projected_camera};
 use crate::editor::{
-    Action, Edit, Editor, Item, Kind, Mode, Selection, Time, excerpt, free_bookmark_name,
+    Action, Edit, Editor, Item, ItemKind, Mode, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
 };
 use crate::scene::{Aspect, Bookmark, Document, Projection};
@@ -294,11 +294,11 @@ impl App {
             Command::Delete => return delete(editor),
             Command::ToggleVisible => return toggle_visible(editor),
             Command::Group => Action::Edit(Edit::Group(
-                editor.selection().places(Kind::Object),
+                editor.selection().places(ItemKind::Object),
                 free_group_name(editor.scene(), "Group 1"),
             )),
             Command::Ungroup => {
-                let objects = editor.selection().places(Kind::Object);
+                let objects = editor.selection().places(ItemKind::Object);
                 Action::Edit(Edit::Group(objects, String::new()))
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),

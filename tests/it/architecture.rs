@@ -327,8 +327,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-#[test]
-fn imports_point_one_way_and_tools_stay_at_home() {
+/// The files of the house, and what is written in them.
+fn texts() -> Vec<(String, String)> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = Vec::new();
     files(&source, &mut found);
@@ -338,7 +338,34 @@ fn imports_point_one_way_and_tools_stay_at_home() {
         let path = path.to_string_lossy().replace('\\', "/");
         (path, fs::read_to_string(file).expect("readable"))
     });
-    let texts: Vec<(String, String)> = texts.collect();
+    texts.collect()
+}
+
+/// The types that a file shows to others.
+fn public_types(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| {
+        let line = line.strip_prefix("pub ")?;
+        let kinds = ["struct ", "enum ", "trait "];
+        let name = kinds.into_iter().find_map(|kind| line.strip_prefix(kind))?;
+        name.split(|sign: char| !sign.is_alphanumeric()).next()
+    })
+}
+
+#[test]
+fn a_public_type_has_a_name_of_its_own() {
+    assert!(public_types("pub struct Tile<R> {\n    pub struct Inner;\nstruct Own;").eq(["Tile"]));
+    let mut homes = BTreeMap::new();
+    for (path, text) in texts() {
+        for name in public_types(&text) {
+            let other = homes.insert(name.to_owned(), path.clone());
+            assert_eq!(other, None, "{name} is something else in {path}");
+        }
+    }
+}
+
+#[test]
+fn imports_point_one_way_and_tools_stay_at_home() {
+    let texts = texts();
     let house = House::new(
         texts
             .iter()

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use glint::image::{Image, render};
-use glint::plan::{Kept, Model, Plan, RenderRequest, needs};
+use glint::plan::{Model, Plan, PlanCache, RenderRequest, needs};
 use glint::scene::{
     Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
 };
@@ -188,7 +188,7 @@ fn the_tree_begins_where_a_list_is_too_long() {
             sampling,
             ..RenderRequest::sized(side, side)
         };
-        let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
+        let plan = Plan::<f32>::new(&scene, &request, &mut PlanCache::default());
         plan.geometry.is_some()
     };
     let (plain, smooth) = (Sampling::Centres, Sampling::ADAPTIVE);
@@ -216,7 +216,7 @@ fn the_tree_begins_where_a_list_is_too_long() {
             ));
         }
         let request = RenderRequest::sized(2000, 2000);
-        let plan = Plan::<f32>::new(&scene, &request, &mut Kept::default());
+        let plan = Plan::<f32>::new(&scene, &request, &mut PlanCache::default());
         plan.geometry.is_some()
     };
     assert!(!space(1.9) && space(2.1));
@@ -225,7 +225,11 @@ fn the_tree_begins_where_a_list_is_too_long() {
 #[test]
 fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
     let left_out = |scene: &Scene| {
-        let plan = Plan::<f32>::new(scene, &RenderRequest::sized(64, 64), &mut Kept::default());
+        let plan = Plan::<f32>::new(
+            scene,
+            &RenderRequest::sized(64, 64),
+            &mut PlanCache::default(),
+        );
         let eye = plan
             .camera_culled_faces
             .iter()

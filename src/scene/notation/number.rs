@@ -25,9 +25,9 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
 }
 
 /// A number that is written that way.
-pub struct Number(pub f64);
+pub struct Shortest(pub f64);
 
-impl Serialize for Number {
+impl Serialize for Shortest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serialize(&self.0, serializer)
     }

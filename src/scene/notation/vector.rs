@@ -5,13 +5,13 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple as _;
 use serde::{Deserialize, Deserializer, Serializer};
 
-use super::number::Number;
+use super::number::Shortest;
 
 /// Writes the three numbers.
 pub fn serialize<S: Serializer>(value: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
     let mut tuple = serializer.serialize_tuple(3)?;
     for part in value.to_array() {
-        tuple.serialize_element(&Number(part))?;
+        tuple.serialize_element(&Shortest(part))?;
     }
     tuple.end()
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::order::{EXPORT, Order, UNKEPT};
+use super::order::{EXPORT, ExportOrder, UNKEPT};
 use super::progress::show_state;
 use super::video_maker::{VideoMaker, VideoState};
 use crate::editor::Editor;
@@ -23,7 +23,7 @@ pub struct Entry {
     /// What it is called here.
     name: String,
     /// What it was ordered with, until it is over.
-    order: Option<Order>,
+    order: Option<ExportOrder>,
     /// The video that follows its frames, if one shall.
     video: Option<VideoMaker>,
     /// Where its frames are: their folder, and their names and ending.
@@ -36,7 +36,7 @@ pub struct Entry {
 
 impl Entry {
     /// What was ordered, as these frames.
-    pub fn new(id: u64, order: Order, sequence: Sequence) -> Self {
+    pub fn new(id: u64, order: ExportOrder, sequence: Sequence) -> Self {
         let (video, files) = (order.settings.video(&sequence), files_of(&sequence));
         let frames = ends_of(&sequence);
         let video = video.map(|(path, video)| VideoMaker::new(sequence, path, video));
@@ -85,7 +85,11 @@ impl Entry {
 
     /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
     /// ended without being finished.
-    pub fn update(&mut self, state: Option<&ExportState>, editor: &mut Editor) -> Option<Order> {
+    pub fn update(
+        &mut self,
+        state: Option<&ExportState>,
+        editor: &mut Editor,
+    ) -> Option<ExportOrder> {
         let problem = self.order.as_mut()?.take_problem();
         if let Some(why) = problem {
             let name = &self.name;
@@ -117,7 +121,7 @@ impl Entry {
             return None;
         }
         let Some(state) = state else {
-            if let Some(Order { name, settings, .. }) = &self.order {
+            if let Some(ExportOrder { name, settings, .. }) = &self.order {
                 let folder = &settings.folder;
                 editor.notify(format!(
                     "{name} is given up; what is done of it stays in {folder}"

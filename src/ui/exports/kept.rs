@@ -12,14 +12,14 @@ const MOST_KEPT: usize = 32;
 
 /// The document that settings belong to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Owner {
+pub enum SettingsOwner {
     /// One with a file.
     File(PathBuf),
     /// One without, see [`Editor::documents`].
     Unnamed(u64),
 }
 
-impl Owner {
+impl SettingsOwner {
     /// That of what is edited.
     pub fn of(editor: &Editor) -> Self {
         let path = editor.path().map(Path::to_owned);
@@ -29,11 +29,11 @@ impl Owner {
 
 /// What was asked for last, for each document, the newest last.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct KeptSettings(Vec<(Owner, Settings)>);
+pub struct KeptSettings(Vec<(SettingsOwner, Settings)>);
 
 impl KeptSettings {
     /// Puts settings away, for the next time that their document is exported.
-    pub fn keep(&mut self, owner: Owner, settings: Settings) {
+    pub fn keep(&mut self, owner: SettingsOwner, settings: Settings) {
         // The next program may run elsewhere.
         let settings = settings.at_home();
         self.0.retain(|(other, _)| *other != owner);
@@ -41,14 +41,15 @@ impl KeptSettings {
     }
 
     /// What was asked for last of this document.
-    pub fn of(&self, owner: &Owner) -> Option<&Settings> {
+    pub fn of(&self, owner: &SettingsOwner) -> Option<&Settings> {
         let found = self.0.iter().find(|(of, _)| of == owner);
         found.map(|(_, settings)| settings)
     }
 
     /// Those of documents with a file, which the next run can know again.
     pub fn named(&self) -> Self {
-        let is_named = |(owner, _): &&(Owner, Settings)| matches!(owner, Owner::File(_));
+        let is_named =
+            |(owner, _): &&(SettingsOwner, Settings)| matches!(owner, SettingsOwner::File(_));
         let named = self.0.iter().filter(is_named);
         let skipped = named.clone().count().saturating_sub(MOST_KEPT);
         Self(named.skip(skipped).cloned().collect())
@@ -67,7 +68,7 @@ mod tests {
             let mut settings = Settings::of(&editor);
             settings.video = video;
             let mut kept = KeptSettings::default();
-            let owner = Owner::File("/a/demo.ron".into());
+            let owner = SettingsOwner::File("/a/demo.ron".into());
             kept.keep(owner.clone(), settings.clone());
             // As the window keeps what it remembers.
             let text = ron::to_string(&kept).expect("a text");

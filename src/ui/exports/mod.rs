@@ -24,8 +24,8 @@ use self::entry::Entry;
 use self::fields::{Settings, fields, presets};
 use self::forecast::Forecast;
 pub use self::kept::KeptSettings;
-use self::kept::Owner;
-use self::order::{EXPORT, Order, UNKEPT};
+use self::kept::SettingsOwner;
+use self::order::{EXPORT, ExportOrder, UNKEPT};
 use self::progress::seconds_left;
 use super::interchange::check_whole;
 use super::pictures::Pictures;
@@ -49,7 +49,7 @@ struct Shown {
     document: u64,
     /// The scene that the settings know.
     revision: u64,
-    owner: Owner,
+    owner: SettingsOwner,
     settings: Settings,
 }
 
@@ -70,7 +70,7 @@ pub struct Exports {
     /// What was ordered and is listed.
     entries: Vec<Entry>,
     /// What ended without being finished.
-    interrupted: Vec<Order>,
+    interrupted: Vec<ExportOrder>,
     /// The frames that were asked for last, with what, of which scene; or why there are none.
     sequence: Option<(Settings, Arc<Scene>, Result<Sequence, String>)>,
     /// What is known of what is asked for.
@@ -83,7 +83,7 @@ impl Exports {
     /// With what was asked for before, and what programs that have ended left in the folder of the program's
     /// data.
     pub fn new(folder: Option<PathBuf>, kept: KeptSettings, editor: &mut Editor) -> Self {
-        let interrupted = folder.as_deref().map_or(Vec::new(), Order::left_in);
+        let interrupted = folder.as_deref().map_or(Vec::new(), ExportOrder::left_in);
         // What failed has said so.
         let news = || interrupted.iter().filter(|order| order.why.is_none());
         if let Some(order) = news().next() {
@@ -224,7 +224,7 @@ impl Exports {
 
     /// The settings that were put away, for the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
-        let (fresh, owner) = (Settings::of(editor), Owner::of(editor));
+        let (fresh, owner) = (Settings::of(editor), SettingsOwner::of(editor));
         let last = self.last.as_ref();
         let last = last.filter(|(document, _)| *document == editor.documents());
         let kept = self.kept.of(&owner);
@@ -286,13 +286,13 @@ impl Exports {
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {
-            let order = Order::new(settings.clone(), editor, self.folder.as_deref());
+            let order = ExportOrder::new(settings.clone(), editor, self.folder.as_deref());
             self.begin(order, sequence, editor, pictures);
         }
         self.shown = Some(Shown {
             document,
             revision,
-            owner: Owner::of(editor),
+            owner: SettingsOwner::of(editor),
             settings,
         });
     }
@@ -319,7 +319,7 @@ impl Exports {
     /// Puts an order into the queue.
     fn begin(
         &mut self,
-        order: Order,
+        order: ExportOrder,
         sequence: Sequence,
         editor: &mut Editor,
         pictures: &Pictures,

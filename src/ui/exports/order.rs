@@ -21,7 +21,7 @@ const MARK: &str = "// export: ";
 const FOLDER: &str = "exports";
 
 /// An export that was asked for.
-pub struct Order {
+pub struct ExportOrder {
     /// What it is called.
     pub name: String,
     /// What is asked for.
@@ -36,7 +36,7 @@ pub struct Order {
     writing: Background<Result<(), String>>,
 }
 
-impl Order {
+impl ExportOrder {
     /// An order for the scene of an editor, kept in the folder of the program's data.
     pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
         // The next program may run elsewhere.
@@ -158,7 +158,7 @@ mod tests {
         place.keep(&text, None, None).expect("kept");
         drop(place);
         for _ in 0..2 {
-            assert!(Order::left_in(folder.path()).is_empty());
+            assert!(ExportOrder::left_in(folder.path()).is_empty());
             let files = std::fs::read_dir(&orders).expect("there");
             let names = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
             let kept: Vec<String> = names.filter(|name| name.contains(".ron")).collect();
@@ -173,7 +173,7 @@ mod tests {
         std::fs::write(&file, "").expect("written");
         let editor = Editor::demo();
         for (folder, is_told) in [(Some(&*file), true), (None, false)] {
-            let mut order = Order::new(Settings::of(&editor), &editor, folder);
+            let mut order = ExportOrder::new(Settings::of(&editor), &editor, folder);
             let written = order.writing.take_within(Duration::from_secs(10));
             assert_eq!(
                 written.is_some_and(|it| it.is_ok_and(|it| it.is_err())),
@@ -187,18 +187,18 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let editor = Editor::demo();
         let settings = Settings::of(&editor);
-        let mut order = Order::new(settings.clone(), &editor, Some(folder.path()));
+        let mut order = ExportOrder::new(settings.clone(), &editor, Some(folder.path()));
         let name = order.name.clone();
         let written = order.writing.take_within(Duration::from_mins(1));
         assert_eq!(written, Some(Ok(Ok(()))));
         assert!(
-            Order::left_in(folder.path()).is_empty(),
+            ExportOrder::left_in(folder.path()).is_empty(),
             "its program still runs"
         );
         drop(order);
         // Found, and left again.
         for _ in 0..2 {
-            let found = Order::left_in(folder.path());
+            let found = ExportOrder::left_in(folder.path());
             let [order] = &found[..] else {
                 panic!("{} orders", found.len());
             };
@@ -210,9 +210,9 @@ mod tests {
                 name.split_once(" · ").map(|(_, rest)| rest)
             );
         }
-        Order::left_in(folder.path())
+        ExportOrder::left_in(folder.path())
             .into_iter()
-            .for_each(Order::end);
-        assert!(Order::left_in(folder.path()).is_empty());
+            .for_each(ExportOrder::end);
+        assert!(ExportOrder::left_in(folder.path()).is_empty());
     }
 }

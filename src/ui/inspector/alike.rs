@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::items::{BOTH, COLOR_PACK};
-use crate::editor::{Edit, Item, Kind};
+use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
-use crate::ui::rows::{Chosen, is_channel};
+use crate::ui::rows::{EditedPart, is_channel};
 
 /// A point of something that a change moves.
 struct MovedPoint {
@@ -114,7 +114,7 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
             (edits.collect(), field)
         }
         Edit::MakePackUnique(_) => {
-            let objects = selected.iter().filter(|item| item.kind == Kind::Object);
+            let objects = selected.iter().filter(|item| item.kind == ItemKind::Object);
             let edits = objects.map(|item| Edit::MakePackUnique(item.index));
             (edits.collect(), "own color packs")
         }
@@ -127,7 +127,7 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
 pub fn chosen_for_all(
     scene: &Scene,
     selected: &[Item],
-    (edit, Chosen { field, part }): (Edit, Chosen),
+    (edit, EditedPart { field, part }): (Edit, EditedPart),
 ) -> Edit {
     // As if it had nothing there: then it is one more that changes.
     let nothing = |own: &mut DVec3| match part {
@@ -181,7 +181,7 @@ pub fn chosen_for_all(
 
 /// The packs that are selected, and those that the selected objects wear, each once.
 pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
-    let others = selected.iter().filter(|item| item.kind != Kind::Light);
+    let others = selected.iter().filter(|item| item.kind != ItemKind::Light);
     let packs = others.filter_map(|item| scene.color_packs.get_index_of(item.color_pack(scene)?));
     packs.collect::<BTreeSet<_>>().into_iter()
 }

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::editor::{Edit, Item, Kind};
+use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{Mesh, Object, Scene, Shape};
 
 /// Why a group is not stretched.
@@ -68,7 +68,7 @@ pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edi
         return None;
     };
     let change = Change::between(old, new)?;
-    let objects = members.iter().filter(|item| item.kind == Kind::Object);
+    let objects = members.iter().filter(|item| item.kind == ItemKind::Object);
     let objects = objects.filter_map(|item| Some((item.index, scene.objects.get(item.index)?)));
     let objects: Vec<(usize, &Object)> = objects.collect();
     let sum: DVec3 = objects

@@ -10,7 +10,7 @@ use crate::scene::{
 use crate::ui::commands::Command;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, coordinate};
+use crate::ui::rows::{Field, FieldRows, coordinate};
 use crate::ui::theme::ROW;
 
 /// Every property of the camera.
@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     title(ui, icons::CAMERA, "Camera");
     let before = &editor.shown().camera;
     let mut camera = before.clone();
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     place_rows(&mut rows, editor.orientation(), &mut camera);
     rows.heading("Vectors");
     let defaults = Camera::default();
@@ -54,7 +54,7 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if before.is_empty() {
         return;
     }
-    Rows::new(ui).heading("Bookmarks");
+    FieldRows::new(ui).heading("Bookmarks");
     for (index, Bookmark { name, .. }) in before.iter().enumerate() {
         let size = vec2(ui.available_width(), ROW);
         let layout = Layout::right_to_left(Align::Center);
@@ -84,7 +84,7 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// Projection, place and angles.
-pub fn place_rows(rows: &mut Rows, angles: Orientation, camera: &mut Camera) {
+pub fn place_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
     let kinds = [Projection::Perspective, Projection::Orthographic];
     rows.choice(
         "projection",
@@ -102,7 +102,7 @@ pub fn place_rows(rows: &mut Rows, angles: Orientation, camera: &mut Camera) {
     angle_rows(rows, angles, camera);
 }
 
-fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
+fn projection_rows(rows: &mut FieldRows, camera: &mut Camera) {
     let defaults = Camera::default();
     if camera.projection == Projection::Orthographic {
         rows.number(
@@ -148,7 +148,7 @@ fn projection_rows(rows: &mut Rows, camera: &mut Camera) {
 }
 
 /// Yaw, pitch and roll in degrees; a change rebuilds `look_at` and up from them.
-fn angle_rows(rows: &mut Rows, before: Orientation, camera: &mut Camera) {
+fn angle_rows(rows: &mut FieldRows, before: Orientation, camera: &mut Camera) {
     let mut angles = before;
     let parts = [
         (

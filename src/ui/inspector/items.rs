@@ -14,7 +14,7 @@ use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Chosen, Field, Rows, color_names, coordinate, fraction};
+use crate::ui::rows::{EditedPart, Field, FieldRows, color_names, coordinate, fraction};
 use crate::words::counted;
 
 /// Most things that are listed as wearing a pack.
@@ -33,10 +33,10 @@ pub fn light(
     index: usize,
     before: &Light,
     out: &mut UiRequests,
-) -> Option<(Edit, Chosen)> {
+) -> Option<(Edit, EditedPart)> {
     title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
     let mut light = before.clone();
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     rows.vector(
         &coordinate("position", "Where it shines from, in world units"),
         DVec3::ZERO,
@@ -132,7 +132,7 @@ fn factor(name: &'static str, hint: &'static str) -> Field {
     }
 }
 
-fn pack_choice(rows: &mut Rows, scene: &Scene, name: &mut String) {
+fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
     let options = scene
         .color_packs
         .keys()
@@ -153,7 +153,7 @@ pub fn object(
     (index, is_alone): (usize, bool),
     before: &Object,
     out: &mut UiRequests,
-) -> Option<(Edit, Chosen)> {
+) -> Option<(Edit, EditedPart)> {
     title_field(
         ui,
         icons::of_shape(&before.shape),
@@ -162,7 +162,7 @@ pub fn object(
         out,
     );
     let mut object = before.clone();
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     rows.heading(before.shape.kind());
     shape_rows(&mut rows, &mut object.shape);
     rows.toggle(
@@ -203,7 +203,7 @@ pub fn object(
 }
 
 /// What turns triangles into a mesh and back: what is shown is all that is selected.
-fn mesh_tools(rows: &mut Rows, shape: &Shape, out: &mut UiRequests) {
+fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     match shape {
         Shape::Triangle(_) => {
             let hint = "Make one mesh of this triangle and all that share corners with it";
@@ -226,7 +226,7 @@ fn mesh_tools(rows: &mut Rows, shape: &Shape, out: &mut UiRequests) {
     }
 }
 
-fn tool(rows: &mut Rows, name: &str, hint: &str, is_enabled: bool) -> bool {
+fn tool(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool {
     let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
     button.hint(hint).clicked()
 }
@@ -247,7 +247,7 @@ fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     }
 }
 
-fn shape_rows(rows: &mut Rows, shape: &mut Shape) {
+fn shape_rows(rows: &mut FieldRows, shape: &mut Shape) {
     shape.fields(&mut |scene::Property { name, hint, value }| match value {
         PropertyValue::Point(point) => rows.vector(&coordinate(name, hint), DVec3::ZERO, point),
         PropertyValue::Direction(direction) => {
@@ -266,10 +266,10 @@ pub fn pack(
     index: usize,
     before: &ColorPack,
     out: &mut UiRequests,
-) -> Option<(Edit, Chosen)> {
+) -> Option<(Edit, EditedPart)> {
     let mut pack = before.clone();
     let defaults = ColorPack::default();
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     let mut both = pack.diffuse;
     rows.color(
         BOTH,
@@ -326,7 +326,7 @@ pub fn pack(
 
 /// What uses a pack, each a way to it.
 pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     rows.heading("Used by");
     let mut all = Item::wearing(scene, name);
     let users: Vec<Item> = all.by_ref().take(MOST_USERS).collect();

@@ -6,7 +6,7 @@ use egui::{Button, Id, Ui};
 
 use super::camera::place_rows;
 use super::title::{tell_different, title};
-use crate::editor::{Action, Edit, Editor, Item, Kind, Time};
+use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Owners, Scene,
     Shape, Target, Value, format_number,
@@ -15,7 +15,7 @@ use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, coordinate, fraction};
+use crate::ui::rows::{Field, FieldRows, coordinate, fraction};
 use crate::words::counted;
 
 /// The ways on which every value can go on.
@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
             .filter_map(|(name, is_so)| is_so.then_some(name)),
     );
     let (mut new_time, mut new_pace) = (time, pace);
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     rows.number(&time_field(only.is_some()), &mut new_time);
     pace_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
@@ -84,7 +84,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
 }
 
 /// What holds at the time of a key; the animation with another one, once it is changed.
-fn value_rows(rows: &mut Rows, animation: &Animation, place: KeyPlace) -> Option<Animation> {
+fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> Option<Animation> {
     let Some(track) = place.track else {
         let key = animation.keys.get(place.index)?;
         let mut camera = key.value.clone();
@@ -195,7 +195,7 @@ fn time_field(is_only: bool) -> Field {
     }
 }
 
-fn pace_rows(rows: &mut Rows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
+fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
     let ways = key_ways(editor, editor.selection().keys(), *way);
     let can_orbit = ways.len() > STAYING.len();
     rows.choice(
@@ -270,18 +270,18 @@ pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
     for item in items {
         let name = || item.name(scene).unwrap_or_default().to_owned();
         match item.kind {
-            Kind::Light => {
+            ItemKind::Light => {
                 positions.push(Target::LightPosition(name()));
                 intensities.push(Target::LightIntensity(name()));
             }
-            Kind::Object => {
+            ItemKind::Object => {
                 positions.push(Target::ObjectPosition(name()));
                 let object = scene.objects.get(item.index);
                 if object.is_some_and(|object| matches!(object.shape, Shape::Mesh(_))) {
                     rotations.push(Target::ObjectRotation(name()));
                 }
             }
-            Kind::Pack => {}
+            ItemKind::Pack => {}
         }
     }
     let mut values = vec![

@@ -8,14 +8,14 @@ use super::as_one::as_one;
 use super::items;
 use super::keys;
 use super::title::{name_field, tell_different, title, title_field};
-use crate::editor::{Action, Edit, Editor, Item, Kind};
+use crate::editor::{Action, Edit, Editor, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::obstacles::is_enabled;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::Chosen;
+use crate::ui::rows::EditedPart;
 use crate::ui::theme::{GRID, ROW};
 
 /// Most things that are compared, or whose keys are looked at, in every frame of the window.
@@ -56,15 +56,15 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let mut own = UiRequests::default();
     let index = last.index;
     let chosen = match last.kind {
-        Kind::Object => {
+        ItemKind::Object => {
             let object = scene.objects.get(index);
             object.and_then(|object| items::object(ui, scene, (index, false), object, &mut own))
         }
-        Kind::Light => {
+        ItemKind::Light => {
             let light = scene.lights.get(index);
             light.and_then(|light| items::light(ui, scene, index, light, &mut own))
         }
-        Kind::Pack => {
+        ItemKind::Pack => {
             let pack = scene.color_packs.get_index(index);
             pack.and_then(|(name, pack)| {
                 title_field(ui, icons::PACK, last, name, &mut own);
@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         }
     };
     // A group stays what it is: its members are not to be in one place.
-    let stays = |chosen: &(Edit, Chosen)| {
+    let stays = |chosen: &(Edit, EditedPart)| {
         let is_pack = matches!(chosen.0, Edit::Pack(..));
         group.is_none() || is_pack || ["radius", items::COLOR_PACK].contains(&chosen.1.field)
     };
@@ -112,11 +112,11 @@ fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
 fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
     let selected = &selected[selected.len().saturating_sub(MOST)..];
     let mut names = match last.kind {
-        Kind::Light => light_differences(scene, selected),
-        Kind::Object => object_differences(scene, selected, last),
-        Kind::Pack => Vec::new(),
+        ItemKind::Light => light_differences(scene, selected),
+        ItemKind::Object => object_differences(scene, selected, last),
+        ItemKind::Pack => Vec::new(),
     };
-    if last.kind != Kind::Light {
+    if last.kind != ItemKind::Light {
         names.extend(pack_differences(scene, selected));
     }
     names
@@ -158,7 +158,7 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
     };
     let others: Vec<&Object> = selected
         .iter()
-        .filter(|item| item.kind == Kind::Object)
+        .filter(|item| item.kind == ItemKind::Object)
         .filter_map(of)
         .collect();
     let theirs: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
@@ -185,7 +185,7 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
 fn light_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
     let lights: Vec<&Light> = selected
         .iter()
-        .filter(|item| item.kind == Kind::Light)
+        .filter(|item| item.kind == ItemKind::Light)
         .filter_map(|item| scene.lights.get(item.index))
         .collect();
     differing(

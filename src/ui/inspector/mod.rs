@@ -32,7 +32,7 @@ use egui::{ScrollArea, Ui};
 use super::icons;
 use super::requests::UiRequests;
 use super::theme::GRID;
-use crate::editor::{Editor, Item, Kind, Selection};
+use crate::editor::{Editor, Item, ItemKind, Selection};
 use crate::scene::Target;
 
 /// Shows the selection and pushes its changes.
@@ -69,19 +69,19 @@ fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     let scene = editor.shown();
     let index = item.index;
     match item.kind {
-        Kind::Light => {
+        ItemKind::Light => {
             let Some(value) = scene.lights.get(index) else {
                 return;
             };
             items::light(ui, scene, index, value, out);
         }
-        Kind::Object => {
+        ItemKind::Object => {
             let Some(value) = scene.objects.get(index) else {
                 return;
             };
             items::object(ui, scene, (index, true), value, out);
         }
-        Kind::Pack => {
+        ItemKind::Pack => {
             if let Some((name, value)) = scene.color_packs.get_index(index) {
                 title_field(ui, icons::PACK, item, name, out);
                 items::pack(ui, index, value, out);

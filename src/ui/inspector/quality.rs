@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::super::requests::UiRequests;
-use super::super::rows::Rows;
+use super::super::rows::FieldRows;
 use crate::editor::{Edit, Editor};
 use crate::lab::{Choice, EIGHT_BIT_FLOOR, Goal};
 use crate::scene::{Render, Scene};
@@ -67,7 +67,7 @@ impl Quality {
     }
 
     /// A row to choose from.
-    pub fn show(&mut self, rows: &mut Rows, editor: &Editor, out: &mut UiRequests) {
+    pub fn show(&mut self, rows: &mut FieldRows, editor: &Editor, out: &mut UiRequests) {
         // What was asked about a document that is gone is not answered.
         self.asked
             .take_if(|asked| asked.document != editor.documents());

@@ -13,7 +13,7 @@ use crate::scene::{
 };
 use crate::ui::icons;
 use crate::ui::requests::UiRequests;
-use crate::ui::rows::{Field, Rows, color_names, fraction};
+use crate::ui::rows::{Field, FieldRows, color_names, fraction};
 
 /// What belongs to the scene as a whole.
 pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     let mut ambient = scene.ambient_intensity;
     let mut background = scene.background;
     let mut markers = scene.light_visualization;
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     rows.number(
         &fraction(
             "ambient",
@@ -58,7 +58,7 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
     title(ui, icons::IMAGE, "Picture");
     let mut render = scene.render.clone();
     let defaults = Render::default();
-    let mut rows = Rows::new(ui);
+    let mut rows = FieldRows::new(ui);
     for (name, hint, default, value) in [
         (
             "width",
@@ -102,7 +102,7 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
 }
 
 /// A row for each choice between methods.
-struct MethodRows<'a, 'u>(&'a mut Rows<'u>);
+struct MethodRows<'a, 'u>(&'a mut FieldRows<'u>);
 
 impl VisitSetting for MethodRows<'_, '_> {
     fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
@@ -122,7 +122,7 @@ impl VisitSetting for MethodRows<'_, '_> {
 }
 
 /// A row for a whole number.
-fn whole(rows: &mut Rows, field: &Field, value: &mut u32) {
+fn whole(rows: &mut FieldRows, field: &Field, value: &mut u32) {
     let mut real = f64::from(*value);
     rows.number(field, &mut real);
     *value = real.round() as u32;

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
-use crate::editor::{Arrangement, Edit, Editor, Item, Kind, Selection};
+use crate::editor::{Arrangement, Edit, Editor, Item, ItemKind, Selection};
 use crate::ui::pack_drag::dressed;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -42,7 +42,7 @@ pub fn take_dropped(
     let to = (item, is_after);
     let dragged = response.dnd_hover_payload::<Item>();
     let group = response.dnd_hover_payload::<DraggedGroup>();
-    let is_worn = |dragged: &Item| dragged.kind == Kind::Pack && item.kind != Kind::Pack;
+    let is_worn = |dragged: &Item| dragged.kind == ItemKind::Pack && item.kind != ItemKind::Pack;
     let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
     let edit = match dragged {
         Some(dragged) if is_worn => dressed(editor, *dragged, item),
@@ -89,17 +89,19 @@ pub fn take_dropped_on_group(
         let objects = dragged_objects(editor, item);
         let alone = Some(String::new());
         match item.kind {
-            Kind::Object if share < EDGE => (beside(objects, false, alone), DropMark::Line(false)),
-            Kind::Object if is_folded && share > 1.0 - EDGE => {
+            ItemKind::Object if share < EDGE => {
+                (beside(objects, false, alone), DropMark::Line(false))
+            }
+            ItemKind::Object if is_folded && share > 1.0 - EDGE => {
                 (beside(objects, true, alone), DropMark::Line(true))
             }
-            Kind::Object => {
+            ItemKind::Object => {
                 let members: HashSet<&usize> = group.members.iter().collect();
                 let is_new = !objects.iter().all(|object| members.contains(object));
                 let joins = is_new.then(|| Edit::Group(objects, group.name.clone()));
                 (joins, DropMark::Frame)
             }
-            Kind::Light | Kind::Pack => (None, DropMark::Frame),
+            ItemKind::Light | ItemKind::Pack => (None, DropMark::Frame),
         }
     };
     let of_group = |DraggedGroup(objects): &DraggedGroup| {
@@ -134,7 +136,7 @@ fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
 /// Whether what is dragged with one item and another one are in the same group, or in none.
 fn are_in_one_group(editor: &Editor, dragged: Item, item: Item) -> bool {
     let group = |index: usize| Some(&editor.scene().objects.get(index)?.group);
-    item.kind != Kind::Object
+    item.kind != ItemKind::Object
         || dragged_objects(editor, dragged)
             .into_iter()
             .all(|object| group(object) == group(item.index))
@@ -145,7 +147,7 @@ fn put_beside(editor: &Editor, dragged: Item, (item, is_after): (Item, bool)) ->
     if dragged.kind != item.kind || dragged.index == item.index {
         return None;
     }
-    if item.kind != Kind::Object {
+    if item.kind != ItemKind::Object {
         let items = dragged_items(editor, dragged);
         // Counted without them.
         let before = items
@@ -177,7 +179,7 @@ fn put_group_beside(
     (item, is_after): (Item, bool),
 ) -> Option<Edit> {
     let object = editor.scene().objects.get(item.index)?;
-    let has_place = item.kind == Kind::Object && object.group.is_empty();
+    let has_place = item.kind == ItemKind::Object && object.group.is_empty();
     has_place.then(|| arranged(objects.clone(), (item.index, is_after), None))
 }
 
@@ -201,7 +203,7 @@ pub fn take_dropped_at_end(
         return;
     }
     let item = response.dnd_hover_payload::<Item>();
-    let item = item.filter(|item| item.kind == Kind::Object);
+    let item = item.filter(|item| item.kind == ItemKind::Object);
     let group = response.dnd_hover_payload::<DraggedGroup>();
     let (objects, to) = match (item, group) {
         (Some(item), _) => (dragged_objects(editor, *item), Some(String::new())),

@@ -3,7 +3,7 @@
 use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
-use crate::editor::{Edit, Item, Kind};
+use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
@@ -20,7 +20,7 @@ const LONG: usize = 18;
 pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
     let name = item
         .color_pack(scene)
-        .filter(|_| item.kind != Kind::Light)?;
+        .filter(|_| item.kind != ItemKind::Light)?;
     let pack = scene.color_packs.get(name)?;
     let is_matte = pack.diffuse.abs().max_element() > 0.0;
     let color = if is_matte { pack.diffuse } else { pack.ambient };

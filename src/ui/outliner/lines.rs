@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use egui_material_icons::MaterialIcon;
 
-use crate::editor::{Item, Kind, Selection};
+use crate::editor::{Item, ItemKind, Selection};
 use crate::scene::{List, Object};
 use crate::ui::icons;
 
 /// One line of the list.
 pub enum Line {
     Single(&'static Selection, MaterialIcon, &'static str),
-    Kind(Kind, usize),
+    ItemKind(ItemKind, usize),
     /// A group of objects, by its place in [`Groups`].
     Group(usize),
     /// An item, and whether it is in a group.
@@ -109,7 +109,7 @@ pub enum Entries<'a> {
 
 /// All lines, made one by one as they are asked for: a list of ten thousand would take as long as
 /// everything else together.
-pub struct Lines<'a>(pub [(Kind, usize, Entries<'a>); 3]);
+pub struct Lines<'a>(pub [(ItemKind, usize, Entries<'a>); 3]);
 
 /// What is above the groups.
 pub static SINGLES: [(Selection, MaterialIcon, &str); 3] = [
@@ -161,7 +161,7 @@ impl Lines<'_> {
         let mut row = index - SINGLES.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
-                return Some(Line::Kind(*kind, *count));
+                return Some(Line::ItemKind(*kind, *count));
             }
             row -= 1;
             match entries.get(row) {
@@ -177,7 +177,7 @@ impl Lines<'_> {
     }
 
     /// How many entries of a group are listed.
-    pub fn listed(&self, kind: Kind) -> usize {
+    pub fn listed(&self, kind: ItemKind) -> usize {
         let mut groups = self.0.iter();
         let group = groups.find(|(group, ..)| *group == kind);
         group.map_or(0, |(.., entries)| entries.len())

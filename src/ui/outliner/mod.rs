@@ -26,7 +26,7 @@ use super::icons;
 use super::menu_entry::{ITEM_COMMANDS, offer};
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
+use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
 /// How far members of a group are to the right of what is in none: behind its name, which is behind an arrow.
@@ -40,7 +40,7 @@ pub struct Outliner {
     listed: (u64, Option<Item>),
     /// Where the list is scrolled to, and how much of it is seen, in points.
     scrolled: (f32, f32),
-    folded: Vec<Kind>,
+    folded: Vec<ItemKind>,
     /// Whose name is edited, and what that was when it began.
     renaming: Option<(Item, String)>,
     /// Whether what is selected is brought into sight, wherever the list was scrolled to.
@@ -55,7 +55,7 @@ impl Outliner {
     pub fn rename(&mut self, scene: &Scene, item: Item) {
         self.filter.clear();
         self.folded.retain(|kind| *kind != item.kind);
-        if let (Kind::Object, Some(object)) = (item.kind, scene.objects.get(item.index)) {
+        if let (ItemKind::Object, Some(object)) = (item.kind, scene.objects.get(item.index)) {
             self.group_rows
                 .folded
                 .retain(|group| *group != object.group);
@@ -67,7 +67,7 @@ impl Outliner {
     /// Starts editing the name of a group in its row.
     pub fn rename_group(&mut self, group: Option<String>) {
         self.filter.clear();
-        self.folded.retain(|kind| *kind != Kind::Object);
+        self.folded.retain(|kind| *kind != ItemKind::Object);
         self.group_rows.renaming = group;
         self.reveals = true;
     }
@@ -173,7 +173,7 @@ impl Outliner {
                     out.select(selection.clone());
                 }
             }
-            Some(Line::Kind(kind, count)) => {
+            Some(Line::ItemKind(kind, count)) => {
                 let some = listed.lines.listed(kind);
                 let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                 let words = if is_all {
@@ -222,15 +222,15 @@ impl Outliner {
     fn lines<'a>(&self, scene: &Scene, groups: &'a Groups) -> Lines<'a> {
         let filter = self.filter.trim().to_lowercase();
         let kinds = [
-            (Kind::Light, scene.lights.len()),
-            (Kind::Object, scene.objects.len()),
-            (Kind::Pack, scene.color_packs.len()),
+            (ItemKind::Light, scene.lights.len()),
+            (ItemKind::Object, scene.objects.len()),
+            (ItemKind::Pack, scene.color_packs.len()),
         ];
-        let entries = |kind: Kind, count: usize| {
+        let entries = |kind: ItemKind, count: usize| {
             if self.folded.contains(&kind) {
                 return Entries::All(0);
             }
-            if filter.is_empty() && kind == Kind::Object && !groups.all.is_empty() {
+            if filter.is_empty() && kind == ItemKind::Object && !groups.all.is_empty() {
                 return Entries::Grouped(groups);
             }
             if filter.is_empty() {
@@ -241,7 +241,10 @@ impl Outliner {
                     kind,
                     index: *index,
                 };
-                let object = scene.objects.get(*index).filter(|_| kind == Kind::Object);
+                let object = scene
+                    .objects
+                    .get(*index)
+                    .filter(|_| kind == ItemKind::Object);
                 let group = object.map(|object| object.group.as_str());
                 let mut names = item.name(scene).into_iter().chain(group);
                 names.any(|name| name.to_lowercase().contains(&filter))
@@ -255,13 +258,13 @@ impl Outliner {
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
-        (kind, words): (Kind, &str),
+        (kind, words): (ItemKind, &str),
         out: &mut UiRequests,
     ) {
         let name = match kind {
-            Kind::Light => "Lights",
-            Kind::Object => "Objects",
-            Kind::Pack => "ColorPacks",
+            ItemKind::Light => "Lights",
+            ItemKind::Object => "Objects",
+            ItemKind::Pack => "ColorPacks",
         };
         let is_folded = self.folded.contains(&kind);
         let (rect, response) =
@@ -295,7 +298,7 @@ impl Outliner {
             font,
             colors.muted,
         );
-        if kind == Kind::Pack {
+        if kind == ItemKind::Pack {
             take_dropped_at_end(ui, editor, (&response, self.is_filtered()), out);
         }
         if response.clicked() {

@@ -3,7 +3,7 @@
 use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
 use super::lines::{Group, Line, Lines, SINGLES};
-use crate::editor::{Action, Editor, Item, Kind, Selection};
+use crate::editor::{Action, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
 /// What has the arrow keys.
@@ -121,8 +121,8 @@ impl Listed<'_> {
     /// Whether an item is selected.
     pub fn is_marked(&self, editor: &Editor, item: Item) -> bool {
         match item.kind {
-            Kind::Object => self.marks.get(item.index) == Some(&true),
-            Kind::Light | Kind::Pack => editor.selection().has(item),
+            ItemKind::Object => self.marks.get(item.index) == Some(&true),
+            ItemKind::Light | ItemKind::Pack => editor.selection().has(item),
         }
     }
 
@@ -175,7 +175,7 @@ impl Listed<'_> {
             Line::Single(selection, ..) => selection.clone(),
             Line::Entry(item, _) => Selection::all([item]),
             Line::Group(index) => Selection::all(self.groups[index].items()),
-            Line::Kind(..) => return None,
+            Line::ItemKind(..) => return None,
         })
     }
 

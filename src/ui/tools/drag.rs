@@ -37,7 +37,7 @@ pub enum Drag {
 }
 
 /// The picture, and what it is seen through.
-pub struct View<'a> {
+pub struct Pane<'a> {
     /// The document.
     pub editor: &'a Editor,
     /// Where the picture is.
@@ -48,7 +48,7 @@ pub struct View<'a> {
     pub painter: Painter,
 }
 
-impl View<'_> {
+impl Pane<'_> {
     /// The point of the scene at a place of the picture; where nothing is, one as far away as the scene's
     /// middle.
     pub fn point_at(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
@@ -103,7 +103,7 @@ impl View<'_> {
 impl Drag {
     /// What a drag from a place of the picture is of, where this handle is.
     pub fn start(
-        view: &View,
+        view: &Pane,
         seen_objects: &SeenObjects,
         (at, handle, is_shifted): (Pos2, Option<Handle>, bool),
         out: &mut UiRequests,
@@ -152,7 +152,7 @@ impl Drag {
     pub fn go_on(
         &mut self,
         ui: &Ui,
-        view: &View,
+        view: &Pane,
         seen_objects: &SeenObjects,
         response: &Response,
         out: &mut UiRequests,
@@ -223,7 +223,7 @@ impl Drag {
     }
 }
 
-fn show_frame(view: &View, part: Rect, (at, count): (Pos2, usize)) {
+fn show_frame(view: &Pane, part: Rect, (at, count): (Pos2, usize)) {
     let colors = palette(view.painter.ctx());
     let fill = colors.accent.gamma_multiply(0.15);
     let line = Stroke::new(1.0, colors.accent);

@@ -22,7 +22,7 @@ pub use screen::Screen;
 use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
 use glam::DVec3;
 
-use self::drag::{Drag, View};
+use self::drag::{Drag, Pane};
 use self::gizmo::{Handle, handle_at};
 use self::navigate::{along, dollied, projected};
 use self::seen_objects::{SeenObjects, ends, item_of, pixel, question};
@@ -32,7 +32,7 @@ use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::pack_drag::{dressed, dropped_pack};
 use super::requests::UiRequests;
 use super::viewport::Place;
-use crate::editor::{Action, Edit, Editor, Item, Kind, Selection};
+use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::image::{ObjectMap, Thing};
 use crate::scene::{Camera, Framing, Projection, around};
 use crate::words::shortened;
@@ -128,7 +128,7 @@ impl Tools {
             self.document = editor.documents();
         }
         self.view = Some(place.rect);
-        let view = View {
+        let view = Pane {
             editor,
             place,
             screen,
@@ -184,9 +184,9 @@ impl Tools {
     }
 
     /// Takes a pack that is dropped on what shall wear it.
-    fn take_pack(&mut self, ui: &Ui, view: &View, response: &Response, out: &mut UiRequests) {
+    fn take_pack(&mut self, ui: &Ui, view: &Pane, response: &Response, out: &mut UiRequests) {
         let dragged = response.dnd_hover_payload::<Item>();
-        let is_over = dragged.is_some_and(|item| item.kind == Kind::Pack);
+        let is_over = dragged.is_some_and(|item| item.kind == ItemKind::Pack);
         let dropped = dropped_pack(response);
         if !is_over && dropped.is_none() {
             return;
@@ -205,7 +205,7 @@ impl Tools {
     }
 
     /// The menu of the right button: what is there is selected, and what can be done to it is listed.
-    fn show_menu(&mut self, ui: &Ui, view: &View, response: &Response, out: &mut UiRequests) {
+    fn show_menu(&mut self, ui: &Ui, view: &Pane, response: &Response, out: &mut UiRequests) {
         if response.secondary_clicked() {
             self.menu_at = ui.input(|input| input.pointer.interact_pos());
             self.menu_waits = true;
@@ -253,7 +253,7 @@ impl Tools {
     fn start(
         &mut self,
         ui: &Ui,
-        view: &View,
+        view: &Pane,
         response: &Response,
         has_gizmo: bool,
         out: &mut UiRequests,
@@ -280,7 +280,7 @@ impl Tools {
     }
 
     /// Shows what the pointer is over.
-    fn hover(&mut self, ui: &Ui, view: &View, at: Option<Pos2>, meant: Option<Handle>) {
+    fn hover(&mut self, ui: &Ui, view: &Pane, at: Option<Pos2>, meant: Option<Handle>) {
         let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of).filter(|_| meant.is_none());
         // A line around the floor would be one around everything that stands on it.
@@ -315,7 +315,7 @@ impl Tools {
         }
     }
 
-    fn turn_wheel(&mut self, view: &View, response: &Response, wheel: f64, out: &mut UiRequests) {
+    fn turn_wheel(&mut self, view: &Pane, response: &Response, wheel: f64, out: &mut UiRequests) {
         let at = response.hover_pos().filter(|_| wheel != 0.0);
         let Some(at) = at else { return };
         let known = self
@@ -328,7 +328,7 @@ impl Tools {
     }
 
     /// Selects what was clicked, once it is known.
-    fn select(&mut self, view: &View, out: &mut UiRequests) {
+    fn select(&mut self, view: &Pane, out: &mut UiRequests) {
         // What was clicked in a picture that is gone, nobody means any more.
         let revision = view.editor.shown_revision();
         self.click = self
@@ -358,7 +358,7 @@ impl Tools {
         out.actions.push(Action::Select(selected));
     }
 
-    fn select_behind(&mut self, view: &View, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
+    fn select_behind(&mut self, view: &Pane, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
         let Some(first) = seen else { return };
         let revision = view.editor.shown_revision();
         let known = self.behind.take().filter(|(before, of, things)| {

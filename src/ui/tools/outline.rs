@@ -13,7 +13,7 @@ const HALO: usize = 1;
 
 /// A part of the picture with lines in it.
 #[derive(Debug)]
-pub struct Outline {
+pub struct OutlineImage {
     /// The first column and row of pixels.
     pub corner: [usize; 2],
     /// The lines, transparent elsewhere.
@@ -35,7 +35,7 @@ pub fn outline(
     map: &ObjectMap,
     (color, halo): (Color32, Color32),
     seen: impl Fn(Thing) -> PixelObject,
-) -> Option<Outline> {
+) -> Option<OutlineImage> {
     let (inside, columns, rows) = silhouette(map, seen)?;
     let reach = LINE + HALO;
     let columns = columns.start.saturating_sub(reach)..(columns.end + reach).min(map.width());
@@ -68,7 +68,7 @@ pub fn outline(
             }
         })
     });
-    Some(Outline {
+    Some(OutlineImage {
         corner: [columns.start, rows.start],
         image: ColorImage::new(size, pixels.collect()),
     })

@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::editor::{Edit, Item, Kind, Selection};
+use crate::editor::{Edit, Item, ItemKind, Selection};
 use crate::scene::{Light, Object, Scene, Shape};
 
 /// Something with a place.
@@ -18,9 +18,9 @@ impl Movable {
     /// The item as it is on show, if it has a place.
     pub fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
         match kind {
-            Kind::Object => Some(Self::Object(index, scene.objects.get(index)?.clone())),
-            Kind::Light => Some(Self::Light(index, scene.lights.get(index)?.clone())),
-            Kind::Pack => None,
+            ItemKind::Object => Some(Self::Object(index, scene.objects.get(index)?.clone())),
+            ItemKind::Light => Some(Self::Light(index, scene.lights.get(index)?.clone())),
+            ItemKind::Pack => None,
         }
     }
 

@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
-use glint::editor::Kind;
+use glint::editor::ItemKind;
 use glint::scene::{Sampling, Scene, Shape, Sphere};
 
 use super::tools::{center, click, drop_at, place, pull};
@@ -567,7 +567,7 @@ fn several_packs_are_changed_as_one() {
     let last = harness.window.get_by_label("plane");
     last.click_modifiers(CTRL);
     harness.settle();
-    assert_eq!(harness.editor().selection().places(Kind::Pack).len(), 2);
+    assert_eq!(harness.editor().selection().places(ItemKind::Pack).len(), 2);
     harness.type_into("phong", "64");
     for (name, exponent) in [("sphere 1", 64.0), ("plane", 64.0)] {
         let pack = &harness.scene().color_packs[name];
