@@ -399,16 +399,24 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder).map_err(|error| {
-        // It ends with the path of a file that nobody has asked for.
-        let words = error.to_string();
-        let why = words.split(" at path ").next().unwrap_or(&words);
-        let why = match error.kind() {
+        let error = without_path(error);
+        match error.kind() {
             // Of a file that may be written to, nobody would look for the reason there.
-            io::ErrorKind::PermissionDenied => format!("its folder may not be written to: {why}"),
-            _ => why.to_owned(),
-        };
-        io::Error::new(error.kind(), why)
+            kind @ io::ErrorKind::PermissionDenied => {
+                io::Error::new(kind, format!("its folder may not be written to: {error}"))
+            }
+            _ => error,
+        }
     })
+}
+
+/// Why a temporary file could not be made, without its path at the end, which nobody has asked for.
+pub fn without_path(error: io::Error) -> io::Error {
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((why, _)) => io::Error::new(error.kind(), why),
+        None => error,
+    }
 }
 
 #[cfg(test)]

@@ -46,7 +46,7 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     write_text(&args.output, &povray_text(&scene))?;
     let (width, height) = (scene.render.width, scene.render.height);
     let path = args.output.display().to_string();
-    if path.contains(['\\', '"']) {
+    if path.contains(['\\', '"']) || !path.is_ascii() {
         let sentence = "POV-Ray reads no file of such a name: rename it to draw it";
         say(&format!("{path}: {sentence}"));
         return Ok(());

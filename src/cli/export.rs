@@ -27,7 +27,7 @@ struct SequenceArgs {
     /// The scene file (RON)
     scene: PathBuf,
     /// Frames, counted from 1: 1-202, 1,4 or 1-10:3 [default: all]
-    #[arg(long, value_parser = Frames::parse)]
+    #[arg(long, value_parser = Frames::parse, allow_hyphen_values = true)]
     frames: Option<Frames>,
     /// Names of the frames, with %d where the number goes, or %05d for five digits
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
@@ -124,8 +124,8 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     }
     let threads = args.threads.start()?;
     let start = Instant::now();
-    let reporter = ProgressReporter::new(&sequence, args.openjd);
-    let done = export(sequence.clone(), &threads, &reporter)?;
+    let mut reporter = ProgressReporter::new(&sequence, args.openjd);
+    let done = export(sequence.clone(), &threads, &mut reporter)?;
     let seconds = start.elapsed().as_secs_f64();
     if let Some((path, video)) = video {
         reporter.clear();
@@ -170,7 +170,7 @@ fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
 fn export(
     sequence: Sequence,
     threads: &Threads,
-    reporter: &ProgressReporter,
+    reporter: &mut ProgressReporter,
 ) -> Result<Exported, CliError> {
     let again = "; what is done stays: once that is put right, the same command goes on from there";
     let failed = |error: ExportError| CliError::failed(format!("{error}{again}"));
@@ -205,18 +205,26 @@ fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
 struct ProgressReporter {
     bar: ProgressBar,
     is_openjd: bool,
+    /// What was told last: how many frames there are, and the line about their share.
+    told: Option<usize>,
+    line: String,
 }
 
 impl ProgressReporter {
     fn new(sequence: &Sequence, is_openjd: bool) -> Self {
         // How long the others take nobody knows before the first.
         let bar = bar(sequence, is_openjd, "{spinner} {bar:32} {pos}/{len} frames");
-        Self { bar, is_openjd }
+        Self {
+            bar,
+            is_openjd,
+            told: None,
+            line: String::new(),
+        }
     }
 
-    fn tell(&self, done: Exported) {
+    fn tell(&mut self, done: Exported) {
         let so_far = done.so_far();
-        if so_far > 0 && self.bar.position() == so_far as u64 {
+        if self.told.replace(so_far) == Some(so_far) {
             return;
         }
         if self.bar.position() == 0 && so_far > 0 {
@@ -227,7 +235,11 @@ impl ProgressReporter {
         // That all is done is said when it is, of the video too.
         if self.is_openjd && so_far < done.total {
             let share = so_far as f64 * 100.0 / done.total.max(1) as f64;
-            say(&format!("openjd_progress: {share:.1}"));
+            let line = format!("openjd_progress: {share:.1}");
+            if self.line != line {
+                say(&line);
+                self.line = line;
+            }
         }
         self.say_status(&format!("{so_far} of {} frames", done.total));
     }
@@ -277,7 +289,7 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     for (file, backup) in job.replaced {
         let (file, backup) = (file.display(), backup.display());
         say(&format!(
-            "{file} held something else, which is kept as {backup}"
+            "{file} held something else, which is kept as {backup}; whatever reads it gets this one now"
         ));
     }
     Ok(())

@@ -40,6 +40,15 @@ pub enum ExportError {
         /// What the system answered.
         source: io::Error,
     },
+    /// A frame was put in the place of one that was made.
+    #[error(
+        "{path} is not the frame that was made, any more: another export has put it there; give each a folder of its own",
+        path = .path.display()
+    )]
+    Changed {
+        /// The file of the frame.
+        path: PathBuf,
+    },
 }
 
 /// Why there is no video.
@@ -87,14 +96,8 @@ pub enum VideoError {
         size: (u32, u32),
     },
     /// The same, of the same size.
-    #[error(
-        "{path} is not the frame that was made, any more: another export has put it there; give each a folder of its own",
-        path = .path.display()
-    )]
-    Changed {
-        /// The file of the frame.
-        path: PathBuf,
-    },
+    #[error(transparent)]
+    Changed(ExportError),
     /// A frame could not be read.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Frame {

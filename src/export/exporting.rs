@@ -85,6 +85,8 @@ pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
     left: VecDeque<u64>,
+    /// What each frame that was looked at shows.
+    looked_at: Vec<(u64, Hash)>,
     /// Started with the first frame that is written.
     writers: Option<Writers>,
     /// Frames that the writers have not told about.
@@ -114,6 +116,7 @@ impl Exporting {
         Ok(Self {
             manifest: sequence.manifest()?,
             left: sequence.frames.iter().collect(),
+            looked_at: Vec::new(),
             writers: None,
             on_the_way: 0,
             spare: Vec::new(),
@@ -245,6 +248,7 @@ impl Exporting {
         for frame in self.left.drain(..count.min(self.left.len())) {
             let shown = self.sequence.shown(frame);
             let fingerprint = fingerprint(&shown, self.sequence.format)?;
+            self.looked_at.push((frame, fingerprint));
             let file = self.sequence.file(frame);
             if self.manifest.is_valid(&file, &fingerprint) {
                 self.done.kept += 1;
@@ -294,7 +298,7 @@ impl Exporting {
     /// Waits until the last frame is on the disk.
     ///
     /// # Errors
-    /// [`ExportError`] of a frame that was not written.
+    /// [`ExportError`] of a frame that was not written, or is not there any more.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
         let mut all = Ok(());
         for result in self.writers.take().into_iter().flat_map(Writers::finish) {
@@ -306,7 +310,23 @@ impl Exporting {
             let fault = io::Error::other("a thread that writes stopped with a fault of its own");
             return Err(disk(&self.sequence.folder, fault));
         }
+        if self.done.so_far() == self.done.total {
+            self.check_frames()?;
+        }
         Ok(self.done)
+    }
+
+    /// Another export may have put frames of its own in the place of some.
+    fn check_frames(&self) -> Result<(), ExportError> {
+        let manifest = self.sequence.manifest()?;
+        let is_other = |(frame, fingerprint): &&(u64, Hash)| {
+            manifest.shows_other(&self.sequence.file(*frame), fingerprint)
+        };
+        let path = |&(frame, _): &(u64, Hash)| self.sequence.path(frame);
+        match self.looked_at.iter().find(is_other).map(path) {
+            Some(path) => Err(ExportError::Changed { path }),
+            None => Ok(()),
+        }
     }
 
     fn take(&mut self, result: WriteResult) -> Result<(), ExportError> {

@@ -136,7 +136,8 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
     let output = for_shell(&absolute(path).display().to_string());
     let codec = codec.join(" ");
     let first = sequence.frames.iter().next().unwrap_or(1);
-    let in_a_row = first..first + sequence.frames.count() as u64;
+    let count = sequence.frames.count();
+    let in_a_row = first..first + count as u64;
     if sequence.frames.iter().eq(in_a_row) {
         // To ffmpeg, all of the path is a pattern.
         let folder = absolute(&sequence.folder).display().to_string();
@@ -144,7 +145,7 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
         let input = for_shell(&Path::new(&folder).join(names).display().to_string());
         return Some(format!(
-            "ffmpeg -framerate {fps} -start_number {first} -i {input} {codec} {output}"
+            "ffmpeg -framerate {fps} -start_number {first} -i {input} -frames:v {count} {codec} {output}"
         ));
     }
     let files = sequence.frames.iter();

@@ -66,6 +66,12 @@ impl Manifest {
         self.notes.get(file) != newer.notes.get(file)
     }
 
+    /// Whether the file was written by somebody who shows something else in it.
+    pub fn shows_other(&self, file: &str, fingerprint: &Hash) -> bool {
+        let note = self.notes.get(file);
+        note.is_some_and(|note| note.fingerprint != *fingerprint)
+    }
+
     /// Whether the file is there, whole, as it was written, and shows what it would show now.
     pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
         let Some(note) = self.notes.get(file) else {

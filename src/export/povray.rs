@@ -14,6 +14,7 @@ use glam::DVec3;
 
 use super::error::last_lines;
 use super::program::end_of;
+use crate::files::without_path;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
@@ -41,7 +42,10 @@ pub enum PovrayError {
     #[error("POV-Ray failed:\n{0}")]
     Failed(String),
     /// Its files could not be written or read.
-    #[error("{path}: {source}", path = .path.display())]
+    #[error(
+        "the files of POV-Ray go to the folder for temporary files (TMPDIR): {path}: {source}",
+        path = .path.display()
+    )]
     Disk {
         /// The file.
         path: PathBuf,
@@ -333,7 +337,8 @@ pub fn by_povray(
         let path = path.to_owned();
         move |source| PovrayError::Disk { path, source }
     };
-    let folder = tempfile::tempdir().map_err(disk(&std::env::temp_dir()))?;
+    let folder = tempfile::tempdir().map_err(without_path);
+    let folder = folder.map_err(disk(&std::env::temp_dir()))?;
     let folder = folder.path();
     let path = folder.join("scene.pov");
     std::fs::write(&path, povray_text(scene)).map_err(disk(&path))?;

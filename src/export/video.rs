@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out, time_of_gif};
-use super::error::VideoError;
+use super::error::{ExportError, VideoError};
 use super::ffmpeg::by_ffmpeg;
 use super::manifest::{MANIFEST, Manifest};
 use super::sequence::Sequence;
@@ -114,9 +114,9 @@ impl Video {
             before.is_other(&after, &file)
         });
         if let Some(frame) = changed.next() {
-            return Err(VideoError::Changed {
+            return Err(VideoError::Changed(ExportError::Changed {
                 path: sequence.path(frame),
-            });
+            }));
         }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))

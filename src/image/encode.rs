@@ -1,5 +1,6 @@
 //! Pictures as files: PNG, binary PPM and EXR.
 
+use std::ffi::OsStr;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -45,27 +46,21 @@ impl Format {
         }
     }
 
-    /// The format with this ending, in lower case.
+    /// The format with this ending, in any case.
     pub fn of_ending(ending: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|format| format.ending() == ending)
+        let is_it = |format: &Self| ending.eq_ignore_ascii_case(format.ending());
+        Self::ALL.into_iter().find(is_it)
     }
 
-    /// The format that a file's ending asks for, in any case.
+    /// The format that a file's ending asks for.
     ///
     /// # Errors
     /// [`FormatError`] for any ending but `.png`, `.ppm` and `.exr`.
     pub fn of_path(path: &Path) -> Result<Self, FormatError> {
-        let ending = path
-            .extension()
-            .map(|e| e.to_string_lossy().to_ascii_lowercase());
-        ending
-            .as_deref()
-            .and_then(Self::of_ending)
-            .ok_or_else(|| FormatError {
-                name: path.display().to_string(),
-            })
+        let ending = path.extension().and_then(OsStr::to_str);
+        ending.and_then(Self::of_ending).ok_or_else(|| FormatError {
+            name: path.display().to_string(),
+        })
     }
 }
 

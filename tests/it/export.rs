@@ -12,7 +12,7 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::export::{ExportStep, Exporting};
+use glint::export::{ExportError, ExportStep, Exporting};
 use glint::export::{Frames, Pattern, Sequence, Video, VideoError};
 use glint::image::{Format, render};
 use glint::plan::RenderRequest;
@@ -481,6 +481,40 @@ fn a_folder_that_vanishes_is_told() {
 }
 
 #[test]
+fn frames_that_another_export_has_replaced_are_told_before_anything_is_made_of_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    (scene.render.width, scene.render.height) = (16, 16);
+    let mut darker = scene.clone();
+    darker.ambient_intensity *= 0.5;
+    let begin = |scene: &Scene, frames: &str| {
+        let numbers = Some(Frames::parse(frames).expect("frames"));
+        let (pattern, format) = (Pattern::default(), Format::Ppm);
+        let (scene, place) = (Arc::new(scene.clone()), folder.path().to_owned());
+        let sequence = Sequence::new(scene, numbers, pattern, format, place).expect("frames");
+        Exporting::new(sequence).expect("a folder")
+    };
+    let control = RenderControl::default();
+    let mut own = begin(&scene, "1-3");
+    for _ in 0..2 {
+        assert!(matches!(own.step(&control), ExportStep::Going));
+    }
+    // The same frames, written by another program too, are no others.
+    for (scene, is_told) in [(&scene, false), (&darker, true)] {
+        let mut other = begin(scene, "1");
+        while !matches!(other.step(&control), ExportStep::Done) {}
+        other.finish().expect("written");
+        while matches!(own.step(&control), ExportStep::Going) {}
+        let finished = own.finish();
+        assert_eq!(finished.is_err(), is_told, "{finished:?}");
+        if let Err(error) = finished {
+            let said = error.to_string();
+            assert!(said.contains("rayTrace1.ppm is not the frame"), "{said}");
+        }
+    }
+}
+
+#[test]
 fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
@@ -569,13 +603,15 @@ fn words_are_checked_before_anything_is_written() {
             "there is no frame 203: the animation has 202 frames",
         ),
         (&["--frames", "3-1"], "1 comes before 3"),
+        (&["--frames", "-3"], "expected frames such as 1-202"),
         (&["--name", "frame"], "a name needs %d"),
         (&["--name", "../%d"], "a name has no folders"),
         (
             &["--video", "a.avi"],
             "end it in .mp4, .mov, .mkv, .gif or .apng",
         ),
-        (&["--format", "jpg"], "expected ppm, png or exr"),
+        (&["--format", "JPG"], "expected ppm, png or exr"),
+        (&["--format", "PNG", "--name", "frame"], "a name needs %d"),
     ] {
         let output = run(&mut export(&frames, words));
         let said = String::from_utf8_lossy(&output.stderr);
@@ -601,8 +637,9 @@ fn runners_are_told_how_far_it_is() {
     let shares: Vec<f64> = shares
         .map(|share| share.parse().expect("a number"))
         .collect();
+    // Each once: a runner keeps every line.
     assert!(
-        shares.windows(2).all(|pair| pair[0] <= pair[1]),
+        shares.windows(2).all(|pair| pair[0] < pair[1]),
         "{shares:?}"
     );
 }
@@ -679,6 +716,10 @@ fn videos_without_ffmpeg_hold_every_frame() {
         said.contains("ffmpeg -framerate 7") || said.contains("ffmpeg -f image2pipe"),
         "{said}"
     );
+    // Of frames in a row no more than were asked for, also where others lie beside them.
+    let output = run(export(&frames, &["--frames", "3-5", "--video", &mp4]).env("PATH", ""));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("-frames:v 3 "), "{said}");
     let left = names(folder.path());
     assert!(left.iter().all(|name| !name.contains("part")), "{left:?}");
 }
@@ -783,7 +824,7 @@ fn no_video_is_made_of_frames_that_another_export_has_put_there() {
         }
         true
     });
-    let is_told = matches!(&made, Err(VideoError::Changed { path }) if *path == sequence.path(7));
+    let is_told = matches!(&made, Err(VideoError::Changed(ExportError::Changed { path })) if *path == sequence.path(7));
     assert!(is_told, "{made:?}");
     assert!(!path.exists());
 }
