@@ -366,22 +366,20 @@ impl Editor {
         let mut next = posed.clone();
         let new = match edit.apply(&mut next) {
             Ok(new) => new,
-            Err(error) => {
-                self.refuse(error.to_string());
-                return false;
-            }
+            Err(error) => return self.refuse(error.to_string()),
         };
         let state = &self.animation_state;
         let is_keyed = joined.is_empty() && state.key_tracked(&self.scene, &mut next, &replaced);
+        if next != posed
+            && let Err(problem) = check_edit(&next, &self.scene)
+        {
+            return self.refuse(format!("{label}: {}", problem.sentence));
+        }
         if is_camera {
             self.animation_state.look_at_view();
         }
         if next == posed {
             return true;
-        }
-        if let Err(problem) = check_edit(&next, &self.scene) {
-            self.refuse(format!("{label}: {}", problem.sentence));
-            return false;
         }
         self.forget_refusal();
         if is_keyed {

@@ -10,7 +10,7 @@ use crate::scene::{
     Animation, Bookmark, Camera, ColorPack, Keys, Light, List, Object, Owner, Render, Scene, Shape,
     Target,
 };
-use crate::words::listed;
+use crate::words::{counted, listed};
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
 use super::arrange::{Arrangement, arrange, group};
@@ -215,7 +215,7 @@ impl Edit {
             Self::Pack(index, _, field) => format!("{}: {field}", name(Item::pack(*index))),
             Self::AddObject(name, _) => format!("Add {name}"),
             Self::Import(_) => "Import mesh".to_owned(),
-            Self::Join(joined) => format!("Join {} objects", joined.len()),
+            Self::Join(joined) => format!("Join {}", counted(joined.len(), "object")),
             Self::Paste(_, word) => (*word).to_owned(),
             Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),

@@ -145,12 +145,13 @@ impl Editor {
         packs.into_iter().chain(flat).chain(hidden).collect()
     }
 
-    /// Tells why an edit is not made.
-    pub(super) fn refuse(&mut self, why: String) {
+    /// Tells why an edit is not made: it is not.
+    pub(super) fn refuse(&mut self, why: String) -> bool {
         // One that is made anew with every step of a drag may be refused in other words each time.
         self.forget_refusal();
         self.is_refused = true;
         self.report_error_in(EDIT, why);
+        false
     }
 
     /// An edit was made: why the last one was not is forgotten.

@@ -33,10 +33,10 @@ impl Addition {
                 let shape = Shape::examples(at, size).swap_remove(index);
                 let low = scene.objects_bounds().map(|(low, _)| low.y);
                 let is_first = planes(scene).next().is_none();
-                let ground = || ground_distance(scene).filter(|_| is_first).map(|_| 0.0);
-                let floor = low.or_else(ground);
+                let ground = || ground_distance(scene).map(|_| 0.0);
+                let floor = low.or_else(ground).filter(|_| is_first);
                 match (&shape, floor) {
-                    // What is there stands on it; where nothing is, it is the ground.
+                    // What is there stands on it; where nothing is, it is the ground. In another one it would not be seen.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.kind(), shape.moved(down))
@@ -372,6 +372,27 @@ mod tests {
                 let apart = low.cmpgt(*other_high).any() || high.cmplt(*other_low).any();
                 assert!(apart, "{index} in another");
             }
+        }
+    }
+
+    #[test]
+    fn a_second_floor_and_a_light_are_seen() {
+        let mut scene = Scene::demo();
+        added(&mut scene, &["Add Plane", "Add Light"]);
+        let planes = planes(&scene).filter_map(|object| object.shape.plane_piece());
+        let heights: Vec<f64> = planes.map(|piece| piece.point.y).collect();
+        assert!(
+            heights.len() == 2 && (heights[1] - heights[0]).abs() > 1.0,
+            "{heights:?}"
+        );
+        // As low as the eye looks, what stands on the floor is high in the picture.
+        let mut scene = Scene::demo();
+        for _ in 0..6 {
+            added(&mut scene, &["Add Light"]);
+            let framing = scene.camera.framing().expect("a basis");
+            let light = scene.lights.iter().last().expect("added").position;
+            let [_, y] = framing.project(light).expect("before the eye");
+            assert!(y.abs() < 0.5, "{light} is at {y}");
         }
     }
 

@@ -139,15 +139,17 @@ impl Finder {
             ui.set_width(WIDTH);
             self.ask(ui, (editor, recent))
         });
-        if let Some(target) = shown.inner {
+        if shown.inner.is_some() || shown.should_close() {
             self.is_open = false;
+            // What is pasted next is not for its field.
+            ctx.memory_mut(egui::Memory::stop_text_input);
+        }
+        if let Some(target) = shown.inner {
             match target {
                 Found::Command(command) => out.commands.push(command),
                 Found::Selection(selection) => out.select(selection),
                 Found::Addition(addition) => out.edit(addition.edit(editor.shown())),
             }
-        } else if shown.should_close() {
-            self.is_open = false;
         }
     }
 

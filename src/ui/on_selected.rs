@@ -30,14 +30,13 @@ pub fn joined(editor: &Editor) -> Vec<usize> {
     }
 }
 
-/// Every object that wears the pack of an object, or the pack that is the item.
-pub fn with_same_pack(scene: &Scene, item: Item) -> Selection {
-    let pack = item.color_pack(scene);
+/// Everything that wears the pack of the last item that is selected, or the pack that it is.
+pub fn with_same_pack(scene: &Scene, selected: &Selection) -> Selection {
+    let pack = selected.item().and_then(|item| item.color_pack(scene));
     let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
-    let others = wearing.filter(|other| other.kind == ItemKind::Object && *other != item);
+    let others = wearing.filter(|other| !selected.has(*other));
     // What was selected stays so, and is what the inspector shows.
-    let own = Some(item);
-    Selection::all(others.chain(own))
+    Selection::all(others.chain(selected.items().iter().copied()))
 }
 
 /// Deletes everything that is selected.

@@ -231,7 +231,8 @@ impl App {
             self.tools
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);
         }
-        if !is_still && self.layout.shot {
+        // What the colours mean stands in its place.
+        if !is_still && self.layout.shot && aspect == Aspect::All {
             self.thumbs.show_shot(ui, &self.editor, place.rect, out);
         }
         (place, response)

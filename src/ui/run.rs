@@ -287,8 +287,8 @@ impl App {
             Command::ViewFront => seen_along(editor, DVec3::NEG_Z),
             Command::ViewRight => seen_along(editor, DVec3::NEG_X),
             Command::ViewTop => seen_along(editor, DVec3::NEG_Y),
-            Command::Perspective => projected(editor, Projection::Perspective),
-            Command::Orthographic => projected(editor, Projection::Orthographic),
+            Command::Perspective => return project(editor, Projection::Perspective),
+            Command::Orthographic => return project(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
             Command::Delete => return delete(editor),
@@ -319,10 +319,10 @@ impl App {
                 Action::Edit(Edit::Camera(bookmark.camera.clone(), "bookmark"))
             }
             Command::SelectSamePack => {
-                let Some(item) = editor.selection().item() else {
+                if editor.selection().items().is_empty() {
                     return;
-                };
-                Action::Select(with_same_pack(editor.scene(), item))
+                }
+                Action::Select(with_same_pack(editor.scene(), editor.selection()))
             }
             Command::Rename if editor.selection().items().len() > 1 => {
                 self.layout.show_outliner();
@@ -424,7 +424,9 @@ fn seen_along(editor: &Editor, direction: DVec3) -> Action {
     Action::Edit(Edit::Camera(axis_camera(editor, direction), "view"))
 }
 
-fn projected(editor: &Editor, projection: Projection) -> Action {
-    let camera = projected_camera(editor, projection);
-    Action::Edit(Edit::Camera(camera, "projection"))
+fn project(editor: &mut Editor, projection: Projection) {
+    if editor.shown().camera.projection != projection {
+        let camera = projected_camera(editor, projection);
+        editor.apply(Action::Edit(Edit::Camera(camera, "projection")));
+    }
 }

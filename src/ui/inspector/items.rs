@@ -277,7 +277,8 @@ pub fn pack(
         defaults.diffuse,
         &mut both,
     );
-    if both != pack.diffuse {
+    // Also where it is what diffuse was, and ambient another.
+    if both != pack.diffuse || rows.chosen().is_some() {
         (pack.ambient, pack.diffuse) = (both, both);
     }
     rows.color(
@@ -318,7 +319,8 @@ pub fn pack(
         let chosen = rows.chosen()?;
         return Some((Edit::Pack(index, pack, chosen.field), chosen));
     }
-    if let Some(field) = rows.changed() {
+    let chosen = || rows.chosen().map(|chosen| chosen.field);
+    if let Some(field) = rows.changed().or_else(chosen) {
         out.edit(Edit::Pack(index, pack, field));
     }
     None

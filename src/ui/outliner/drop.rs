@@ -118,10 +118,11 @@ pub fn take_dropped_on_group(
     }
 }
 
-/// What is dragged with one: all of its kind that are selected, if it is among them.
+/// What is dragged with one: all of its kind that are selected, if it is among them. All of a group are dragged by its own
+/// row.
 fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
     let selected = editor.selection();
-    if selected.has(item) {
+    if selected.has(item) && selected.group(editor.scene()).is_none() {
         selected.of_kind(item.kind)
     } else {
         vec![item]

@@ -11,7 +11,7 @@ use crate::ui::icons;
 /// One line of the list.
 pub enum Line {
     Single(&'static Selection, MaterialIcon, &'static str),
-    ItemKind(ItemKind, usize),
+    Title(ItemKind, usize),
     /// A group of objects, by its place in [`Groups`].
     Group(usize),
     /// An item, and whether it is in a group.
@@ -161,7 +161,7 @@ impl Lines<'_> {
         let mut row = index - SINGLES.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
-                return Some(Line::ItemKind(*kind, *count));
+                return Some(Line::Title(*kind, *count));
             }
             row -= 1;
             match entries.get(row) {

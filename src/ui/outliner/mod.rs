@@ -106,6 +106,7 @@ impl Outliner {
         ui.horizontal(|ui| self.show_filter(ui, editor, out));
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &self.group_rows.folded);
+        self.group_rows.forget_folded(&groups.all);
         let lines = self.lines(editor.scene(), &groups);
         // Once for all rows: there may be many groups of many, of which many are selected.
         let marks = editor
@@ -128,14 +129,33 @@ impl Outliner {
             area = area.vertical_scroll_offset(to);
         }
         self.listed = (editor.documents(), editor.selection().item());
-        self.reveals = false;
+        let mut rows = 0..0;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
+            rows = range.clone();
             for index in range {
                 self.show_line(ui, editor, (listed, index), out);
             }
         });
+        // A name that is edited is left where its row is out of sight, or it would take the keys once it is back.
+        if !std::mem::take(&mut self.reveals) && !rows.any(|row| self.is_renamed(listed, row)) {
+            self.renaming = None;
+            self.group_rows.renaming = None;
+        }
         self.groups = groups;
         self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
+    }
+
+    /// Whether the name in a row is edited.
+    fn is_renamed(&self, listed: Listed, row: usize) -> bool {
+        match listed.lines.get(row) {
+            Some(Line::Entry(item, _)) => {
+                self.renaming.as_ref().is_some_and(|(own, _)| *own == item)
+            }
+            Some(Line::Group(place)) => {
+                self.group_rows.renaming.as_ref() == Some(&listed.groups[place].name)
+            }
+            _ => false,
+        }
     }
 
     fn show_filter(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -173,7 +193,7 @@ impl Outliner {
                     out.select(selection.clone());
                 }
             }
-            Some(Line::ItemKind(kind, count)) => {
+            Some(Line::Title(kind, count)) => {
                 let some = listed.lines.listed(kind);
                 let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                 let words = if is_all {

@@ -175,7 +175,7 @@ impl Listed<'_> {
             Line::Single(selection, ..) => selection.clone(),
             Line::Entry(item, _) => Selection::all([item]),
             Line::Group(index) => Selection::all(self.groups[index].items()),
-            Line::ItemKind(..) => return None,
+            Line::Title(..) => return None,
         })
     }
 

@@ -434,6 +434,19 @@ fn the_middle_button_moves_the_line_of_time_and_not_the_playhead() {
 }
 
 #[test]
+fn what_changes_no_camera_leaves_no_shot() {
+    let mut harness = window(&[0.0, 1.0]);
+    harness.press(Modifiers::NONE, Key::C);
+    let before = harness.scene().clone();
+    harness.press(Modifiers::NONE, Key::P);
+    assert!(harness.editor().looks_through());
+    harness.click("Camera");
+    harness.type_into("up x", "0, 0, 0");
+    assert!(harness.editor().looks_through(), "it is refused");
+    assert_eq!(harness.scene(), &before);
+}
+
+#[test]
 fn a_ready_made_flight_says_what_it_replaces() {
     let mut harness = window(&[0.0, 1.0]);
     harness.press(CTRL, Key::K);

@@ -197,6 +197,93 @@ fn a_scene_of_thousands_shows_only_the_rows_in_sight() {
 }
 
 #[test]
+fn a_name_that_is_edited_out_of_sight_is_left() {
+    let mut scene = Scene::demo();
+    for n in 0..300_u32 {
+        let mut ball = scene.objects[0].clone();
+        ball.name = format!("Ball {n}");
+        scene.objects.push(ball);
+    }
+    let mut harness = EditorHarness::on(scene);
+    harness.click("Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.window.event(Event::Text("Other".to_owned()));
+    harness.settle();
+    let row = harness.window.get_by_label("Plane").rect().center();
+    hover(&mut harness, row);
+    let roll = |harness: &mut EditorHarness, lines: f32| {
+        harness.window.event(Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, lines),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        harness.settle();
+    };
+    let is_listed = |harness: &EditorHarness| harness.window.query_by_label("Triangle 1").is_some();
+    roll(&mut harness, -100.0);
+    assert!(!is_listed(&harness));
+    roll(&mut harness, 100.0);
+    assert!(is_listed(&harness));
+    assert!(harness.window.query_by_label("new name").is_none());
+    assert_eq!(harness.scene().objects[0].name, "Sphere 1");
+}
+
+#[test]
+fn one_of_a_group_is_pulled_out_alone_and_its_row_pulls_all() {
+    let mut scene = Scene::demo();
+    for member in [0, 1, 2] {
+        scene.objects[member].group = "three".to_owned();
+    }
+    let mut harness = EditorHarness::on(scene);
+    harness.click("three");
+    assert_eq!(harness.selected().len(), 3);
+    let row = |harness: &EditorHarness, name: &str| harness.window.get_by_label(name).rect();
+    let from = row(&harness, "Sphere 2").center();
+    let to = row(&harness, "Plane").center_bottom() - egui::vec2(0.0, 2.0);
+    pull(
+        &mut harness,
+        from,
+        to,
+        PointerButton::Primary,
+        Modifiers::NONE,
+    );
+    drop_at(&mut harness, to, PointerButton::Primary, Modifiers::NONE);
+    let groups = harness.scene().objects.iter();
+    let members = groups.filter(|object| object.group == "three");
+    let members: Vec<&str> = members.map(|object| object.name.as_str()).collect();
+    assert_eq!(members, ["Sphere 1", "Triangle 1"]);
+}
+
+#[test]
+fn what_wears_the_same_pack_is_selected_lights_too_and_the_rest_stays_so() {
+    let mut harness = EditorHarness::new();
+    let same_pack = |harness: &mut EditorHarness| {
+        harness.press(CTRL, Key::K);
+        harness
+            .window
+            .event(Event::Text("select all with this".to_owned()));
+        harness.settle();
+        harness.press(Modifiers::NONE, Key::Enter);
+    };
+    harness.click("Light 1");
+    same_pack(&mut harness);
+    assert_eq!(harness.selected(), ["Light 2", "Light 1"]);
+    harness.click("Plane");
+    let row = harness.window.get_by_label("Triangle 2").rect().center();
+    click(&mut harness, row, Modifiers::SHIFT);
+    let before = harness.selected().len();
+    same_pack(&mut harness);
+    let selected = harness.selected();
+    assert!(
+        selected.contains(&"Plane") && selected.contains(&"Triangle 6"),
+        "{selected:?}"
+    );
+    assert!(selected.len() >= before.max(7), "{selected:?}");
+}
+
+#[test]
 fn things_are_deleted_with_the_packs_that_they_wear() {
     let mut harness = EditorHarness::new();
     let with_control = |harness: &mut EditorHarness, name: &str| {

@@ -460,6 +460,21 @@ fn escape_leaves_one_thing_after_the_other() {
 }
 
 #[test]
+fn what_is_pasted_by_its_name_is_pasted() {
+    let mut harness = EditorHarness::new();
+    harness.press(CTRL, Key::K);
+    harness.window.event(Event::Text("paste".to_owned()));
+    harness.settle();
+    harness.window.key_press(Key::Enter);
+    harness.window.step();
+    // The text comes as soon as it is asked for.
+    let text = r#"Object(name: "New", color_pack: "plane", shape: Sphere(center: (120, 90, -80), radius: 9))"#;
+    harness.window.event(Event::Paste(text.to_owned()));
+    harness.settle();
+    assert_eq!(harness.selected(), ["New"]);
+}
+
+#[test]
 fn text_is_pasted_and_what_is_none_is_refused() {
     let mut harness = EditorHarness::new();
     let text = r#"Object(name: "New", color_pack: "plane", shape: Sphere(center: (120, 90, -80), radius: 9))"#;
