@@ -6,7 +6,7 @@ use indexmap::IndexSet;
 
 use super::action::{Message, STEP};
 use super::document::Editor;
-use crate::scene::{Animation, Scene, Shape, Target};
+use crate::scene::{Animation, Object, Scene, Target};
 use crate::words::{counted, listed};
 
 /// What messages about edits are about.
@@ -131,8 +131,8 @@ impl Editor {
         let packs =
             listed(packs).map(|names| format!("all of it wears {own}, what wore {names} too"));
         let flat = others.is_empty().then_some(*first).filter(|&index| {
-            let shape = self.scene.objects.get(index).map(|object| &object.shape);
-            matches!(shape, Some(Shape::Mesh(mesh)) if mesh.smooth > 0.0)
+            let object = self.scene.objects.get(index);
+            object.is_some_and(Object::is_smooth)
         });
         let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
         let objects = joined

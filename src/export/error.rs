@@ -95,9 +95,9 @@ pub enum VideoError {
         /// Its width and height in pixels.
         size: (u32, u32),
     },
-    /// The same, of the same size.
+    /// A frame of the same size, or the notes about all of them cannot be read.
     #[error(transparent)]
-    Changed(ExportError),
+    Frames(#[from] ExportError),
     /// A frame could not be read.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Frame {

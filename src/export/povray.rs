@@ -264,12 +264,10 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
         let pack = scene.color_packs.get(&object.color_pack);
         pack.is_some_and(|pack| pack.reflective)
     };
-    let is_smooth =
-        |object: &Object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0);
     let clipped = visible().any(is_mirror).then_some(
         "what is brighter than white is white in mirrors here, and brighter than white there",
     );
-    let lifted = visible().any(is_smooth).then_some(
+    let lifted = visible().any(Object::is_smooth).then_some(
         "light ends on the curved surface of smooth meshes here, and on their flat faces there",
     );
     let is_seen_there = |object: &Object| {

@@ -7,7 +7,6 @@ use std::time::Duration;
 use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out, time_of_gif};
 use super::error::{ExportError, VideoError};
 use super::ffmpeg::by_ffmpeg;
-use super::manifest::{MANIFEST, Manifest};
 use super::sequence::Sequence;
 use crate::files::NewFile;
 use crate::image::Image;
@@ -93,7 +92,7 @@ impl Video {
         path: &Path,
         mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
-        let before = notes(sequence)?;
+        let before = sequence.manifest()?;
         let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
         let lent = || (beside.lend(), path);
         match self {
@@ -108,15 +107,14 @@ impl Video {
             return Err(VideoError::Stopped);
         }
         // Another export may have put frames of its own in the place of some while they were read.
-        let after = notes(sequence)?;
+        let after = sequence.manifest()?;
         let mut changed = sequence.frames.iter().filter(|frame| {
             let file = sequence.file(*frame);
             before.is_other(&after, &file)
         });
         if let Some(frame) = changed.next() {
-            return Err(VideoError::Changed(ExportError::Changed {
-                path: sequence.path(frame),
-            }));
+            let path = sequence.path(frame);
+            return Err(ExportError::Changed { path }.into());
         }
         let placed = beside.place();
         placed.map_err(|error| VideoError::disk(path, &error))
@@ -174,13 +172,6 @@ impl Video {
             _ => count,
         }
     }
-}
-
-/// What is noted about the frames of a sequence.
-fn notes(sequence: &Sequence) -> Result<Manifest, VideoError> {
-    let path = sequence.folder.join(MANIFEST);
-    let notes = Manifest::read(&sequence.folder);
-    notes.map_err(|source| VideoError::unreadable(&path, source.into()))
 }
 
 #[cfg(test)]

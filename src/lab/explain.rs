@@ -181,7 +181,7 @@ fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32)
         pack: object.color_pack.clone(),
         point,
         normal,
-        is_smooth: matches!(&object.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0),
+        is_smooth: object.is_smooth(),
         distance: met.t,
         ambient: linear(pack.ambient) * scene.ambient_intensity,
         lights: lights.collect(),

@@ -81,10 +81,8 @@ impl<'a> Buffers<'a> {
     pub(super) fn positions(&self, accessor: &Accessor) -> Result<Vec<[f32; 3]>, Fault> {
         let is_float = accessor.data_type() == DataType::F32;
         if accessor.dimensions() != Dimensions::Vec3 || !(is_float || self.is_quantized) {
-            let number = accessor.index();
-            return Err(Fault::new(format!(
-                "accessor {number} holds positions that are not three floats each"
-            )));
+            let why = "holds positions that are not three floats each";
+            return Err(refused(accessor, why));
         }
         let mut points = if accessor.view().is_some() {
             self.numbers(accessor)?
@@ -98,11 +96,9 @@ impl<'a> Buffers<'a> {
         };
         let (places, values) = (sparse.indices(), sparse.values());
         if sparse.count() > points.len() {
-            let (number, count) = (accessor.index(), sparse.count());
-            return Err(Fault::new(format!(
-                "accessor {number} replaces {count} of {} points",
-                points.len()
-            )));
+            let (count, there) = (sparse.count(), points.len());
+            let why = format!("replaces {count} of {there} points");
+            return Err(refused(accessor, why));
         }
         let size = places.index_type().size();
         let slots = (places.offset(), size, sparse.count());
@@ -112,10 +108,8 @@ impl<'a> Buffers<'a> {
         for (place, value) in places.zip(values) {
             let place = whole(place) as usize;
             let Some(point) = points.get_mut(place) else {
-                let number = accessor.index();
-                return Err(Fault::new(format!(
-                    "accessor {number} replaces point {place}, which is not there"
-                )));
+                let why = format!("replaces point {place}, which is not there");
+                return Err(refused(accessor, why));
             };
             *point = components(value, accessor);
         }
@@ -139,16 +133,12 @@ impl<'a> Buffers<'a> {
             DataType::U8 | DataType::U16 | DataType::U32
         );
         if !is_index || accessor.dimensions() != Dimensions::Scalar {
-            let number = accessor.index();
-            return Err(Fault::new(format!(
-                "accessor {number} holds indices that are not whole numbers"
-            )));
+            let why = "holds indices that are not whole numbers";
+            return Err(refused(accessor, why));
         }
         if accessor.sparse().is_some() {
-            let number = accessor.index();
-            return Err(Fault::new(format!(
-                "accessor {number} holds indices and is sparse, which is not read"
-            )));
+            let why = "holds indices and is sparse, which is not read";
+            return Err(refused(accessor, why));
         }
         Ok(self.items(accessor)?.map(whole).collect())
     }
@@ -278,4 +268,9 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
         let name = excerpt(&name, 80);
         Fault::new(format!("cannot read its buffer {name}: {error}"))
     })
+}
+
+/// Why an accessor is not read.
+pub(super) fn refused(accessor: &Accessor, why: impl std::fmt::Display) -> Fault {
+    Fault::new(format!("accessor {} {why}", accessor.index()))
 }

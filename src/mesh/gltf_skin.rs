@@ -6,7 +6,7 @@ use gltf::mesh::Primitive;
 use gltf::{Semantic, Skin};
 
 use super::error::Fault;
-use super::gltf_buffers::Buffers;
+use super::gltf_buffers::{Buffers, refused};
 
 /// How a node's mesh becomes part of the scene.
 pub(super) enum Placing {
@@ -30,10 +30,8 @@ impl Placing {
             Some(accessor) => {
                 let kind = (DataType::F32, Dimensions::Mat4);
                 if (accessor.data_type(), accessor.dimensions()) != kind {
-                    let number = accessor.index();
-                    return Err(Fault::new(format!(
-                        "accessor {number} holds matrices of a skin that are not sixteen floats each"
-                    )));
+                    let why = "holds matrices of a skin that are not sixteen floats each";
+                    return Err(refused(&accessor, why));
                 }
                 buffers.numbers::<16>(&accessor)?
             }
@@ -74,10 +72,8 @@ impl Placing {
         };
         for accessor in [&joints, &weights] {
             if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
-                let number = accessor.index();
-                return Err(Fault::new(format!(
-                    "accessor {number} does not hold four joints or shares of a skin for each point"
-                )));
+                let why = "does not hold four joints or shares of a skin for each point";
+                return Err(refused(accessor, why));
             }
         }
         Ok(Some(Hung {

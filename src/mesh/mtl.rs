@@ -188,9 +188,7 @@ impl<'a> Libraries<'a> {
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
         Some(text_of(&bytes).into_owned())
     }
-}
 
-impl Libraries<'_> {
     /// The name of a file as the disk has it: exporters on Windows do not tell capitals from other letters.
     fn spelled(&self, name: &Path) -> PathBuf {
         let place = self.folder.join(name);

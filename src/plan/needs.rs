@@ -9,7 +9,7 @@ use super::materials::Material;
 use super::pack::Plan;
 use super::precision::{is_filtered, is_fine, is_too_much_twice, needs_double};
 use super::request::RenderRequest;
-use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Scene, Shape};
+use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Scene};
 use crate::simd::Exponent;
 use crate::words::counted;
 
@@ -321,10 +321,7 @@ fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need 
 
 fn normals(scene: &Scene) -> Need {
     let rule = "normals";
-    let is_smooth = |object: &&Object| match &object.shape {
-        Shape::Mesh(mesh) => object.visible && mesh.smooth > 0.0,
-        _ => false,
-    };
+    let is_smooth = |object: &&Object| object.visible && object.is_smooth();
     match scene.objects.iter().filter(is_smooth).count() {
         0 => need(
             rule,

@@ -153,11 +153,7 @@ impl Aspect {
                     light.intensity = 1.0;
                 }
             }
-            Self::Ambient => {
-                for light in shown.lights.iter_mut() {
-                    light.intensity = 0.0;
-                }
-            }
+            Self::Ambient => darken(&mut shown),
             Self::Diffuse => {
                 shown.ambient_intensity = 0.0;
                 change(&mut shown, |pack| pack.specular = DVec3::ZERO);
@@ -190,11 +186,16 @@ fn clay(shown: &mut Scene) {
     }
 }
 
-/// Takes away all light, and what stands behind everything.
-fn unlit(shown: &mut Scene) {
+/// Takes away what lights give.
+fn darken(shown: &mut Scene) {
     for light in shown.lights.iter_mut() {
         light.intensity = 0.0;
     }
+}
+
+/// Takes away all light, and what stands behind everything.
+fn unlit(shown: &mut Scene) {
+    darken(shown);
     shown.background = DVec3::ZERO;
     for pack in shown.packs_mut().values_mut() {
         pack.reflective = false;
@@ -203,9 +204,7 @@ fn unlit(shown: &mut Scene) {
 
 /// Gives each object a colour of its own, which no light changes.
 fn flat(shown: &mut Scene) {
-    for light in shown.lights.iter_mut() {
-        light.intensity = 0.0;
-    }
+    darken(shown);
     shown.ambient_intensity = 1.0;
     let mut word = "object".to_owned();
     while shown.color_packs.keys().any(|name| name.starts_with(&word)) {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{MAX_BYTES, Scene, VERSION};
-use crate::files::{Stamp, back_up, read_at_most, read_file, time_of, write_atomic};
+use crate::files::{Stamp, absolute, back_up, read_at_most, read_file, time_of, write_atomic};
 use crate::mesh::is_mesh_file;
 
 /// The RON text of the demo scene, as embedded in the program.
@@ -289,9 +289,7 @@ impl Document {
         write_atomic(path, text.as_bytes()).map_err(disk)?;
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
     }
-}
 
-impl Document {
     /// Whether the text of a scene has comments that this one has not.
     fn loses_comments_of(&self, text: &str) -> bool {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -304,8 +302,10 @@ impl Document {
 
 /// The folder of a file, from the root.
 fn folder_of(path: &Path) -> PathBuf {
-    let path = absolute(path).unwrap_or_else(|_| path.to_owned());
-    path.parent().map(Path::to_owned).unwrap_or_default()
+    absolute(path)
+        .parent()
+        .map(Path::to_owned)
+        .unwrap_or_default()
 }
 
 /// One item of a list in each line. Texts have their line breaks escaped.

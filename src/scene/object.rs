@@ -40,6 +40,11 @@ impl Object {
         }
     }
 
+    /// Whether it is a mesh whose faces are shaded as one curved surface.
+    pub fn is_smooth(&self) -> bool {
+        matches!(&self.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0)
+    }
+
     /// How many triangles it has, if it is a mesh.
     pub fn faces(&self) -> usize {
         match &self.shape {

@@ -2,8 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::object::Object;
-use super::shape::Shape;
 use super::whole::Scene;
 
 impl Scene {
@@ -36,10 +34,8 @@ impl Scene {
 
     /// Whether two objects look the same where they lie in each other: what is smooth has normals of its own.
     pub fn look_alike(&self, one: usize, other: usize) -> bool {
-        let is_smooth =
-            |object: &Object| matches!(&object.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0);
         let (one, other) = (&self.objects[one], &self.objects[other]);
-        one.color_pack == other.color_pack && !is_smooth(one) && !is_smooth(other)
+        one.color_pack == other.color_pack && !one.is_smooth() && !other.is_smooth()
     }
 
     /// Whether two packs are equal.

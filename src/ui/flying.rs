@@ -187,12 +187,7 @@ impl Flying {
 
     /// Whether the speed was changed just now.
     pub fn is_speed_told(&mut self, ctx: &Context) -> bool {
-        let now = ctx.input(|input| input.time);
-        self.changed_at = self.changed_at.filter(|at| now - at < TOLD);
-        if self.changed_at.is_some() {
-            ctx.request_repaint_after_secs(TOLD as f32);
-        }
-        self.changed_at.is_some()
+        lasts(ctx, &mut self.changed_at, TOLD)
     }
 
     /// Whether keys move the camera: they are then no shortcuts.
@@ -202,13 +197,9 @@ impl Flying {
 
     /// Whether the flight goes on, as one step in the history.
     pub fn is_gesture(&mut self, ctx: &Context) -> bool {
-        let now = ctx.input(|input| input.time);
-        self.wheel_at = self.wheel_at.filter(|at| now - at < WHEEL_QUIET);
-        if self.wheel_at.is_some() {
-            ctx.request_repaint_after_secs(WHEEL_QUIET as f32);
-        }
+        let is_turned = lasts(ctx, &mut self.wheel_at, WHEEL_QUIET);
         let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
-        self.wheel_at.is_some() || self.ctrl.is_flying() || any_down
+        is_turned || self.ctrl.is_flying() || any_down
     }
 
     /// Notes which keys are held for shortcuts: fast hands let the control key go before the other one.
@@ -311,4 +302,14 @@ pub fn drag_of(picture: &Response) -> Vec2 {
     let (moved, motion) = (picture.drag_delta(), picture.drag_motion());
     let along = |moved: f32, motion: f32| if moved == 0.0 { motion } else { moved };
     vec2(along(moved.x, motion.x), along(moved.y, motion.y))
+}
+
+/// Whether something happened less than so many seconds ago; when that is over, there is a frame.
+fn lasts(ctx: &Context, at: &mut Option<f64>, seconds: f64) -> bool {
+    let now = ctx.input(|input| input.time);
+    *at = at.filter(|at| now - at < seconds);
+    if at.is_some() {
+        ctx.request_repaint_after_secs(seconds as f32);
+    }
+    at.is_some()
 }

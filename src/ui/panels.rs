@@ -237,9 +237,7 @@ impl App {
         }
         (place, response)
     }
-}
 
-impl App {
     /// From a part of the still picture to all of it, and from that to the live view.
     fn leave_still(&mut self, out: &mut UiRequests) {
         if self.pictures.region.take().is_none() {

@@ -40,22 +40,4 @@ impl Setup {
             select: Vec::new(),
         }
     }
-
-    /// A window that shows the scene, has its picture taken and closes.
-    pub fn for_screenshot(scene: Option<PathBuf>, screenshot: Screenshot) -> Self {
-        Self {
-            data_folder: None,
-            screenshot: Some(screenshot),
-            ..Self::native(scene)
-        }
-    }
-
-    /// A window that shows the scene once and closes.
-    pub fn for_start(scene: Option<PathBuf>, start: StartWatch) -> Self {
-        Self {
-            data_folder: None,
-            start: Some(start),
-            ..Self::native(scene)
-        }
-    }
 }

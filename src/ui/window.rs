@@ -54,7 +54,9 @@ pub fn run(
         Some(screenshot) => Setup {
             exports,
             select,
-            ..Setup::for_screenshot(scene, screenshot)
+            data_folder: None,
+            screenshot: Some(screenshot),
+            ..Setup::native(scene)
         },
     };
     open(setup, persist_window)?;
@@ -71,7 +73,12 @@ pub fn run(
 /// [`NoWindow::Unavailable`] as from [`run`].
 pub fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<Option<StartStats>, NoWindow> {
     let (start, stats) = StartWatch::new(since);
-    open(Setup::for_start(scene, start), false)?;
+    let setup = Setup {
+        data_folder: None,
+        start: Some(start),
+        ..Setup::native(scene)
+    };
+    open(setup, false)?;
     Ok(stats.try_recv().ok())
 }
 

@@ -824,7 +824,7 @@ fn no_video_is_made_of_frames_that_another_export_has_put_there() {
         }
         true
     });
-    let is_told = matches!(&made, Err(VideoError::Changed(ExportError::Changed { path })) if *path == sequence.path(7));
+    let is_told = matches!(&made, Err(VideoError::Frames(ExportError::Changed { path })) if *path == sequence.path(7));
     assert!(is_told, "{made:?}");
     assert!(!path.exists());
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{Axis, Map, Tries, scales, scattered};
+use super::map::{Axis, Map, Tries, normal_and_aside, scales, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedDisc, Primitive as _, Ray};
 use crate::scene::Methods;
@@ -35,10 +35,7 @@ pub fn map(effort: u32) -> Map {
 
 fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
-    let aside = normal
-        .cross(DVec3::new(random(3), random(4), random(5)))
-        .try_normalize()?;
+    let (normal, aside) = normal_and_aside(number)?;
     let towards = DVec3::new(random(6), random(7), random(8)).try_normalize()?;
     let is_hit = number.is_multiple_of(2);
     let share = if is_hit { 1.0 - BESIDE } else { 1.0 + BESIDE };

@@ -1,8 +1,6 @@
 //! Highlights of growing sharpness.
 
-use glam::DVec3;
-
-use super::map::{Axis, Map, Tries, scattered};
+use super::map::{Axis, Map, Tries, normal_and_aside, scattered};
 use super::subject::MapSubject;
 use crate::plan::exponent;
 use crate::scene::{HighlightMethod, Method as _};
@@ -42,11 +40,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
     let exponent = exponent(method, p);
-    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
-    let aside = normal
-        .cross(DVec3::new(random(3), random(4), random(5)))
-        .try_normalize()?;
+    let (normal, aside) = normal_and_aside(number)?;
     // Within the highlight: where it has fallen to e^-3 at most.
     let off = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
     let half = normal + aside * off;

@@ -170,6 +170,14 @@ pub fn scattered(number: u64, stream: u64) -> f64 {
     ))
 }
 
+/// A direction that follows no pattern, and one across it; seldom `None`. They take the streams up to the sixth.
+pub fn normal_and_aside(number: u64) -> Option<(DVec3, DVec3)> {
+    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
+    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
+    let other = DVec3::new(random(3), random(4), random(5));
+    Some((normal, normal.cross(other).try_normalize()?))
+}
+
 /// What is added to a state from one random number to the next: 2⁶⁴ over the golden ratio.
 pub const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 

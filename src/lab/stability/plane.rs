@@ -1,8 +1,6 @@
 //! Rays that meet a plane at grazing angles.
 
-use glam::DVec3;
-
-use super::map::{Axis, Map, Tries, scales, scattered};
+use super::map::{Axis, Map, Tries, normal_and_aside, scales, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedPlane, Primitive as _, Ray};
 use crate::scene::Methods;
@@ -32,11 +30,7 @@ pub fn map(effort: u32) -> Map {
 }
 
 fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
-    let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
-    let along = normal
-        .cross(DVec3::new(random(3), random(4), random(5)))
-        .try_normalize()?;
+    let (normal, along) = normal_and_aside(number)?;
     let (sine, cosine) = angle.to_radians().sin_cos();
     let direction = along * cosine - normal * sine;
     let plane = PackedPlane {
@@ -45,7 +39,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
         material: 0,
     };
     let ray = Ray {
-        origin: Vec3::<f32>::from_dvec3(along * (scale * random(7))),
+        origin: Vec3::<f32>::from_dvec3(along * (scale * (scattered(number, 7) * 2.0 - 1.0))),
         direction: Vec3::from_dvec3(direction),
     };
     let found = f64::from(plane.meet(&ray, &Methods::default()));

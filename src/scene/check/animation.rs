@@ -17,11 +17,8 @@ const MIN_GAP: f64 = 0.999_999e-6;
 
 pub fn check_animation(at: &At, scene: &Scene) -> Check {
     let animation: &Animation = &scene.animation;
-    at.field("frames_per_second").within(
-        animation.frames_per_second,
-        *FRAME_RATES.start(),
-        *FRAME_RATES.end(),
-    )?;
+    let rate = at.field("frames_per_second");
+    rate.within(animation.frames_per_second, FRAME_RATES)?;
     let here = at.field("keys");
     check_keys(&here, &animation.keys)?;
     for (index, key) in animation.keys.iter().enumerate() {
@@ -58,7 +55,7 @@ fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
     for (index, key) in keys.iter().enumerate() {
         let at = at.index(index);
         let time = at.field("time");
-        time.within(key.time, 0.0, MAX_SECONDS)?;
+        time.within(key.time, 0.0..=MAX_SECONDS)?;
         if let Some(last) = last.filter(|last| key.time - last < MIN_GAP) {
             return time.refuse(format!(
                 "keys must be in order of time, at least a microsecond apart: {} does not come after {}",
@@ -114,7 +111,7 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
         }
         let at = here.field("value");
         match (key.value, sample) {
-            (Value::Number(number), Value::Number(_)) => at.within(number, 0.0, 1.0)?,
+            (Value::Number(number), Value::Number(_)) => at.within(number, 0.0..=1.0)?,
             (Value::Point(point), Value::Point(_)) => at.point(point)?,
             (_, Value::Number(_)) => {
                 return at.refuse("an intensity is one number, 0–1".to_owned());
@@ -139,7 +136,7 @@ fn check_take(at: &At, take: &Take) -> Check {
     let mut last = -1.0;
     for (index, sample) in take.samples.iter().enumerate() {
         let at = here.index(index);
-        at.index(0).within(sample.0, 0.0, MAX_SECONDS)?;
+        at.index(0).within(sample.0, 0.0..=MAX_SECONDS)?;
         if sample.0 <= last {
             return at
                 .index(0)

@@ -23,11 +23,8 @@ pub fn check_camera(at: &At, camera: &Camera) -> Check {
 
 /// Refuses what would be seen of nothing, or of everything at once.
 pub fn check_lens(at: &At, projection_distance: f64, orthographic_height: f64) -> Check {
-    at.field("projection_distance").within(
-        projection_distance,
-        *PROJECTION_DISTANCES.start(),
-        *PROJECTION_DISTANCES.end(),
-    )?;
+    at.field("projection_distance")
+        .within(projection_distance, PROJECTION_DISTANCES)?;
     at.field("orthographic_height")
         .positive(orthographic_height)
 }

@@ -63,7 +63,7 @@ fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
     check_version(&root, scene.version)?;
     root.field("background").color(scene.background)?;
     root.field("ambient_intensity")
-        .within(scene.ambient_intensity, 0.0, 1.0)?;
+        .within(scene.ambient_intensity, 0.0..=1.0)?;
     check_camera(&root.field("camera"), &scene.camera)?;
     let bookmarks = root.field("bookmarks");
     for (index, bookmark) in scene.bookmarks.iter().enumerate() {
@@ -106,7 +106,7 @@ fn check_packs(at: &At, scene: &Scene) -> Check {
         at.field("diffuse").color(pack.diffuse)?;
         at.field("specular").color(pack.specular)?;
         at.field("phong_exponent")
-            .within(pack.phong_exponent, 0.0, MAX_EXPONENT)?;
+            .within(pack.phong_exponent, 0.0..=MAX_EXPONENT)?;
     }
     Ok(())
 }
@@ -182,7 +182,7 @@ fn check_lights(at: &At, scene: &Scene) -> Check {
                 .refuse(format!("there is another light named {:?}", light.name));
         }
         at.field("position").point(light.position)?;
-        at.field("intensity").within(light.intensity, 0.0, 1.0)?;
+        at.field("intensity").within(light.intensity, 0.0..=1.0)?;
         if let Some(LightObj { radius, color_pack }) = &light.marker {
             let at = at.field("marker");
             at.field("radius").positive(*radius)?;
@@ -202,7 +202,7 @@ fn check_shape(at: &At, shape: &Shape) -> Check {
                 PropertyValue::Direction(direction) => at.direction(*direction),
                 PropertyValue::Length(length) => at.positive(*length),
                 PropertyValue::Angles(angles) => at.angles(*angles),
-                PropertyValue::Angle(angle) => at.within(*angle, 0.0, 180.0),
+                PropertyValue::Angle(angle) => at.within(*angle, 0.0..=180.0),
                 PropertyValue::Factors(factors) => at.factors(*factors),
             };
         }

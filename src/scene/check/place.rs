@@ -1,5 +1,7 @@
 //! A place in the scene, and the checks that values of the same kind share.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec3;
 
 use crate::mesh::FARTHEST;
@@ -108,12 +110,13 @@ impl<'a> At<'a> {
         }
     }
 
-    /// Finite, and between two numbers.
-    pub fn within(&self, value: f64, least: f64, most: f64) -> Check {
+    /// Finite, and in a range.
+    pub fn within(&self, value: f64, range: RangeInclusive<f64>) -> Check {
         self.finite(&[value])?;
-        if (least..=most).contains(&value) {
+        if range.contains(&value) {
             return Ok(());
         }
+        let (least, most) = range.into_inner();
         self.refuse(format!(
             "{} must be between {} and {}, found {}",
             self.name(),
@@ -163,19 +166,21 @@ impl<'a> At<'a> {
 
     /// Factors, none of which makes anything flat.
     pub fn factors(&self, value: DVec3) -> Check {
+        let is_factor = |factor: f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
+        let words = "must have factors between 1e-6 and 1e6, or as much below 0";
+        self.each(value, is_factor, words)
+    }
+
+    /// Finite, and each part as it should be.
+    fn each(&self, value: DVec3, is_good: impl Fn(f64) -> bool, words: &str) -> Check {
         self.finite(&value.to_array())?;
-        let is_factor = |factor: &f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
-        match value
-            .to_array()
-            .into_iter()
-            .find(|factor| !is_factor(factor))
-        {
+        let mut parts = value.to_array().into_iter();
+        match parts.find(|part| !is_good(*part)) {
             None => Ok(()),
-            Some(factor) => self.refuse(format!(
-                "{} must have factors between 1e-6 and 1e6, or as much below 0, found {}",
-                self.name(),
-                format_number(factor)
-            )),
+            Some(part) => {
+                let found = format_number(part);
+                self.refuse(format!("{} {words}, found {found}", self.name()))
+            }
         }
     }
 
@@ -193,19 +198,8 @@ impl<'a> At<'a> {
 
     /// A colour, 0–255 per channel.
     pub fn color(&self, value: DVec3) -> Check {
-        self.finite(&value.to_array())?;
-        match value
-            .to_array()
-            .into_iter()
-            .find(|channel| !(0.0..=255.0).contains(channel))
-        {
-            None => Ok(()),
-            Some(channel) => self.refuse(format!(
-                "{} must have channels between 0 and 255, found {}",
-                self.name(),
-                format_number(channel)
-            )),
-        }
+        let is_channel = |channel: f64| (0.0..=255.0).contains(&channel);
+        self.each(value, is_channel, "must have channels between 0 and 255")
     }
 }
 

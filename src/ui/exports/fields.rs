@@ -80,18 +80,6 @@ pub struct Settings {
     pub video: Option<Video>,
 }
 
-impl Settings {
-    /// The same files, wherever they go and whatever they are called.
-    pub fn unnamed(&self) -> Self {
-        let (folder, name) = (String::new(), String::new());
-        Self {
-            folder,
-            name,
-            ..self.clone()
-        }
-    }
-}
-
 /// A video by its ending.
 fn video_word(video: Option<Video>) -> &'static str {
     video.map_or(NO_VIDEO, Video::ending)
@@ -111,6 +99,16 @@ fn read_video<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Video>, D::Er
 }
 
 impl Settings {
+    /// The same files, wherever they go and whatever they are called.
+    pub fn unnamed(&self) -> Self {
+        let (folder, name) = (String::new(), String::new());
+        Self {
+            folder,
+            name,
+            ..self.clone()
+        }
+    }
+
     /// What an editor's scene asks for.
     pub fn of(editor: &Editor) -> Self {
         let scene = editor.scene();

@@ -107,7 +107,7 @@ fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
 }
 
 /// Degrees.
-fn angle(name: &'static str, hint: &'static str) -> Field {
+pub(super) fn angle(name: &'static str, hint: &'static str) -> Field {
     Field {
         unit: "°",
         speed: Some(0.5),

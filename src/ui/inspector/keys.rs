@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Button, Id, Ui};
 
 use super::camera::place_rows;
+use super::items::angle;
 use super::title::{tell_different, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
@@ -113,14 +114,10 @@ fn intensity_field() -> Field {
 
 fn point_field(target: &Target) -> Field {
     match target {
-        Target::ObjectRotation(_) => Field {
-            unit: "°",
-            speed: Some(0.5),
-            ..coordinate(
-                "rotation",
-                "How it is turned at that time: about x, then y, then z",
-            )
-        },
+        Target::ObjectRotation(_) => {
+            let hint = "How it is turned at that time: about x, then y, then z";
+            angle("rotation", hint)
+        }
         _ => coordinate("position", "Where it is at that time, in world units"),
     }
 }

@@ -155,9 +155,7 @@ impl TimelinePanel {
             self.rows.show_rest(ui, editor, out);
         });
     }
-}
 
-impl TimelinePanel {
     /// Shows all of the line again.
     pub fn fit(&mut self) {
         self.chosen = None;
