@@ -287,8 +287,10 @@ impl App {
             Command::ViewFront => seen_along(editor, DVec3::NEG_Z),
             Command::ViewRight => seen_along(editor, DVec3::NEG_X),
             Command::ViewTop => seen_along(editor, DVec3::NEG_Y),
-            Command::Perspective => return project(editor, Projection::Perspective),
-            Command::Orthographic => return project(editor, Projection::Orthographic),
+            Command::Perspective if is_seen_in(editor, Projection::Perspective) => return,
+            Command::Perspective => projected(editor, Projection::Perspective),
+            Command::Orthographic if is_seen_in(editor, Projection::Orthographic) => return,
+            Command::Orthographic => projected(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
             Command::Delete => return delete(editor),
@@ -424,9 +426,11 @@ fn seen_along(editor: &Editor, direction: DVec3) -> Action {
     Action::Edit(Edit::Camera(axis_camera(editor, direction), "view"))
 }
 
-fn project(editor: &mut Editor, projection: Projection) {
-    if editor.shown().camera.projection != projection {
-        let camera = projected_camera(editor, projection);
-        editor.apply(Action::Edit(Edit::Camera(camera, "projection")));
-    }
+fn is_seen_in(editor: &Editor, projection: Projection) -> bool {
+    editor.shown().camera.projection == projection
+}
+
+fn projected(editor: &Editor, projection: Projection) -> Action {
+    let camera = projected_camera(editor, projection);
+    Action::Edit(Edit::Camera(camera, "projection"))
 }

@@ -911,6 +911,58 @@ fn fur(spikes: usize) -> Scene {
     scene
 }
 
+/// Bars of 512 faces each, a quarter of a pixel wide and five pixels long in a picture of 64 × 64.
+fn bars() -> Scene {
+    const SIDES: u32 = 8;
+    const RINGS: u32 = 33;
+    let ring = |number: u32| {
+        (0..SIDES).map(move |side| {
+            let (y, x) =
+                (f64::from(side) / f64::from(SIDES) * 2.0 * std::f64::consts::PI).sin_cos();
+            DVec3::new(0.2 * x, f64::from(number) * 0.25 - 4.0, 0.2 * y)
+        })
+    };
+    let points = (0..RINGS).flat_map(ring).collect();
+    let faces = (1..RINGS).flat_map(|ring| {
+        (0..SIDES).flat_map(move |side| {
+            let next = (side + 1) % SIDES;
+            let [a, b] = [side, next].map(|side| (ring - 1) * SIDES + side);
+            let [c, d] = [side, next].map(|side| ring * SIDES + side);
+            [[a, c, b], [b, c, d]]
+        })
+    });
+    let bar = Triangles::new(points, faces.collect()).expect("a mesh");
+    let mut scene = Scene::demo();
+    scene.camera.position = DVec3::new(0.0, 0.0, 100.0);
+    scene.camera.look_at = DVec3::NEG_Z;
+    scene.camera.up = DVec3::Y;
+    scene.camera.projection_distance = 1.0;
+    let mut dice = random::Dice(5);
+    let bars = (0..36).map(|number| {
+        let mesh = Mesh {
+            position: DVec3::new(
+                f64::from(number % 6) * 15.0 - 37.0 + dice.real(-2.0, 2.0),
+                f64::from(number / 6) * 15.0 - 37.0 + dice.real(-2.0, 2.0),
+                0.0,
+            ),
+            rotation: DVec3::new(0.0, 0.0, dice.real(0.0, 180.0)),
+            ..Mesh::of(bar.clone())
+        };
+        Object::new(format!("Bar {number}"), "sphere 1", mesh)
+    });
+    scene.objects = bars.collect();
+    scene
+}
+
+#[test]
+fn slender_meshes_of_many_faces_are_seen() {
+    let got = quality_of_clean_edges(&bars(), 64);
+    assert!(
+        got.psnr >= 55.0 && got.worst <= 12.0 && got.rays <= 20.0,
+        "{got:?}"
+    );
+}
+
 #[test]
 fn fur_is_cleaner_than_dividing_its_pixels_further_makes_it() {
     let got = quality_of_clean_edges(&fur(2000), 64);

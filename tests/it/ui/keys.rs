@@ -440,7 +440,7 @@ fn what_changes_no_camera_leaves_no_shot() {
     let before = harness.scene().clone();
     harness.press(Modifiers::NONE, Key::P);
     assert!(harness.editor().looks_through());
-    harness.click("Camera");
+    harness.press_button("Camera");
     harness.type_into("up x", "0, 0, 0");
     assert!(harness.editor().looks_through(), "it is refused");
     assert_eq!(harness.scene(), &before);

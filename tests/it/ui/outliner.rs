@@ -219,6 +219,8 @@ fn a_name_that_is_edited_out_of_sight_is_left() {
             source: egui::MouseWheelSource::Wheel,
             modifiers: Modifiers::NONE,
         });
+        // It rolls out.
+        harness.window.run_steps(40);
         harness.settle();
     };
     let is_listed = |harness: &EditorHarness| harness.window.query_by_label("Triangle 1").is_some();
