@@ -145,7 +145,7 @@ impl Editor {
         packs.into_iter().chain(flat).chain(hidden).collect()
     }
 
-    /// Tells why an edit is not made: it is not.
+    /// Tells why an edit is not made; false, since it was not.
     pub(super) fn refuse(&mut self, why: String) -> bool {
         // One that is made anew with every step of a drag may be refused in other words each time.
         self.forget_refusal();
