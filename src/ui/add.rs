@@ -32,11 +32,12 @@ impl Addition {
             Self::Shape(index) => {
                 let shape = Shape::examples(at, size).swap_remove(index);
                 let low = scene.objects_bounds().map(|(low, _)| low.y);
-                let is_first = planes(scene).next().is_none();
                 let ground = || ground_distance(scene).map(|_| 0.0);
-                let floor = low.or_else(ground).filter(|_| is_first);
+                // In another one it would not be seen, and far over it things would not.
+                let over_others = size * STEP * planes(scene).count() as f64;
+                let floor = low.or_else(ground).map(|floor| floor + over_others);
                 match (&shape, floor) {
-                    // What is there stands on it; where nothing is, it is the ground. In another one it would not be seen.
+                    // What is there stands on it; where nothing is, it is the ground.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.kind(), shape.moved(down))
@@ -95,6 +96,8 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 
 /// How large a new thing is, in heights of the picture.
 const SHARE: f64 = 0.2;
+/// How far a plane is over the one before it, in sizes of a new thing.
+const STEP: f64 = 0.1;
 /// How far apart the places are that are tried, in sizes of a new thing.
 const APART: f64 = 1.3;
 /// With more things than this, only one place is looked at.
