@@ -94,12 +94,9 @@ impl ChartArgs {
 
     /// The smallest size of the picture that shows all of it.
     fn least_size(&self) -> (u32, u32) {
-        let is_one = self.scenes.len() < 2 || self.cores;
-        if is_one {
-            (*SIDES.start(), *SIDES.start())
-        } else {
-            PictureLook::least_size(self.scenes.len())
-        }
+        // Cores are in one chart, of all scenes.
+        let charts = if self.cores { 1 } else { self.scenes.len() };
+        PictureLook::least_size(charts)
     }
 
     /// A size that is too small is known before the first ray.

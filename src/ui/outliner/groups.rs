@@ -24,12 +24,6 @@ pub struct GroupRows {
 }
 
 impl GroupRows {
-    /// A group that comes later may be called as one that is gone.
-    pub fn forget_folded(&mut self, groups: &[Group]) {
-        let is_there = |name: &String| groups.iter().any(|group| group.name == *name);
-        self.folded.retain(is_there);
-    }
-
     /// The row of a group: it folds and unfolds, selects, shows and hides its members, and takes in what is
     /// dropped on it. Nothing while its name is edited.
     pub fn show(

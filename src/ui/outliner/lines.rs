@@ -53,14 +53,13 @@ pub struct Groups {
 
 impl Groups {
     /// The groups of these objects, of which those of the names in `folded` show no members; no rows where no
-    /// object is in one.
-    pub fn update(&mut self, objects: &List<Object>, folded: &[String]) {
-        if self.objects.is_same(objects) && self.folded == folded {
+    /// object is in one. Names of groups that are gone are folded no more: a later one may be called so.
+    pub fn update(&mut self, objects: &List<Object>, folded: &mut Vec<String>) {
+        if self.objects.is_same(objects) && self.folded == *folded {
             return;
         }
         *self = Self {
             objects: objects.clone(),
-            folded: folded.to_vec(),
             ..Self::default()
         };
         let mut places: HashMap<&str, usize> = HashMap::new();
@@ -80,6 +79,8 @@ impl Groups {
             });
             self.all[place].members.push(index);
         }
+        folded.retain(|name| places.contains_key(name.as_str()));
+        self.folded.clone_from(folded);
         if self.all.is_empty() {
             return;
         }
@@ -194,5 +195,29 @@ impl Lines<'_> {
             first += entries.len();
         }
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn a_group_that_comes_later_is_not_folded_as_one_that_is_gone() {
+        let mut scene = Scene::demo();
+        scene.objects[0].group = "pair".to_owned();
+        scene.objects[1].group = "pair".to_owned();
+        let (mut groups, mut folded) = (Groups::default(), vec!["pair".to_owned()]);
+        groups.update(&scene.objects, &mut folded);
+        assert_eq!(folded, ["pair"]);
+        let grouped = scene.objects.clone();
+        scene.objects[0].group.clear();
+        scene.objects[1].group.clear();
+        groups.update(&scene.objects, &mut folded);
+        assert!(folded.is_empty());
+        groups.update(&grouped, &mut folded);
+        let is_listed = |row: &&Row| matches!(row, Row::Object(_, true));
+        assert_eq!(groups.rows.iter().filter(is_listed).count(), 2);
     }
 }

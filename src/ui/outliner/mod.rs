@@ -105,8 +105,7 @@ impl Outliner {
         }
         ui.horizontal(|ui| self.show_filter(ui, editor, out));
         let mut groups = std::mem::take(&mut self.groups);
-        groups.update(&editor.scene().objects, &self.group_rows.folded);
-        self.group_rows.forget_folded(&groups.all);
+        groups.update(&editor.scene().objects, &mut self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
         // Once for all rows: there may be many groups of many, of which many are selected.
         let marks = editor
