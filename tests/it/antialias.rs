@@ -911,7 +911,7 @@ fn fur(spikes: usize) -> Scene {
     scene
 }
 
-/// Bars of 512 faces each, a quarter of a pixel wide and five pixels long in a picture of 64 × 64.
+/// Nearly upright bars of 512 faces each, an eighth of a pixel wide and five pixels long in a picture of 64 × 64.
 fn bars() -> Scene {
     const SIDES: u32 = 8;
     const RINGS: u32 = 33;
@@ -919,7 +919,7 @@ fn bars() -> Scene {
         (0..SIDES).map(move |side| {
             let (y, x) =
                 (f64::from(side) / f64::from(SIDES) * 2.0 * std::f64::consts::PI).sin_cos();
-            DVec3::new(0.2 * x, f64::from(number) * 0.25 - 4.0, 0.2 * y)
+            DVec3::new(0.1 * x, f64::from(number) * 0.25 - 4.0, 0.1 * y)
         })
     };
     let points = (0..RINGS).flat_map(ring).collect();
@@ -945,7 +945,7 @@ fn bars() -> Scene {
                 f64::from(number / 6) * 15.0 - 37.0 + dice.real(-2.0, 2.0),
                 0.0,
             ),
-            rotation: DVec3::new(0.0, 0.0, dice.real(0.0, 180.0)),
+            rotation: DVec3::new(0.0, 0.0, dice.real(-8.0, 8.0)),
             ..Mesh::of(bar.clone())
         };
         Object::new(format!("Bar {number}"), "sphere 1", mesh)
