@@ -55,7 +55,7 @@ pub struct Traced<R> {
 /// and on what is seen in mirrors.
 pub const THING: u32 = 0xFFFF_0000;
 
-/// Brightness of the other samples where some are marked.
+/// Factor that darkens the other samples where some are marked.
 const DARKENED: f64 = 0.25;
 
 /// Side of the squares that packets cover: sixteen rays, or two packets of eight.
