@@ -36,7 +36,7 @@ pub struct ReflectionParent<L: SimdFloat> {
 pub struct EdgeInfo<L> {
     /// The width of a pixel along the rays.
     pub cone: RayCone<L>,
-    /// The sum of 2ⁱ over the lights i that shine on what was hit.
+    /// The sum of [`super::shadows::light_bit`] over the lights that shine on what was hit.
     pub lit: L,
     /// How many pixels away the nearest thing is that may slip between samples; infinity for none.
     pub near: L,

@@ -37,7 +37,7 @@ pub struct Refinement<R> {
     /// Row and column in the tile of all pixels that have received one.
     notified: Vec<[usize; 2]>,
     /// For each pixel of the tile, row by row: how many of its sixteen parts are to be divided, and how many of
-    /// these have corners that do not differ. Only as long as the last pixel of which some are.
+    /// these have corners that do not differ. Ends with the last pixel that has such parts.
     busy: Vec<[u8; 2]>,
     /// Row and column in the tile of the crowded pixels, which are divided no further.
     crowded: Vec<[usize; 2]>,

@@ -70,7 +70,7 @@ pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
     swapped(a, b) | swapped(a, c) | swapped(a, d) | swapped(b, c) | swapped(b, d) | swapped(c, d)
 }
 
-/// Returns the highest bit of the place of each mark that is not zero.
+/// Returns, for each mark that is not zero, the highest bit of its field; all other bits are 0.
 #[inline(always)]
 fn noted(shadows: u32) -> u32 {
     const HIGHEST: u32 = {

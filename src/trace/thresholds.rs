@@ -54,7 +54,7 @@ pub const CROWD: usize = 1_000;
 /// How many times as fast as the camera's own a pixel may widen along mirrored rays that still look into meshes for
 /// what slips between samples: in the image of a strongly curved mirror all of their faces do. Without this limit a
 /// knot of 24,000 faces takes four times as long, for 0.3 dB. In crowded scenes, rays to lights look for nothing
-/// above this limit: if they did, 10,000 mirror balls would take 1.13 times as long, and be as far off.
+/// above this limit: if they searched, 10,000 mirror balls would take 1.13 times as long, and be as far off.
 pub const LARGEST_SPREAD: f64 = 24.0;
 /// The same for mirrored rays from whose hits thin things are looked for on the way to lights, in scenes that are
 /// not crowded: without this limit two mirror balls between mirror walls take 1.16 times as long, for 0.1 dB. With a

@@ -85,7 +85,7 @@ impl Grid {
 pub struct TileColors<R> {
     /// 0–1.
     pub channels: [Vec<R>; 3],
-    /// Distance from one row to the next in these.
+    /// Distance from one row to the next in `channels`.
     pub stride: usize,
 }
 
