@@ -1,4 +1,4 @@
-//! What hits are made of that are lit as one.
+//! The materials of hits that are lit together.
 
 use super::footprint::Footprint;
 use super::mixed_materials::MixedMaterials;
@@ -6,27 +6,27 @@ use super::thresholds::EDGE_CONTRAST;
 use crate::plan::{Plan, PointLight, Surface};
 use crate::simd::{SimdFloat, Vec3};
 
-/// What hits are made of.
+/// The material of hits that are lit together.
 #[derive(Clone, Copy)]
 pub enum HitMaterial<'a, L: SimdFloat> {
-    /// One material.
+    /// The same material for all of them.
     One(&'a Surface<L::Real>),
-    /// Seldom, and never without a tree.
+    /// Several materials: rare, and only in plans with a tree.
     Several(&'a MixedMaterials<L>),
 }
 
 impl<L: SimdFloat> HitMaterial<'_, L> {
-    /// The highlights, see [`crate::simd::Exponent::highlight`]; `None` where nothing has any.
+    /// Returns the intensity of the highlight, see [`crate::simd::Exponent::highlight`]; `None` if no hit has one.
     #[inline(always)]
     pub fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> Option<L> {
         match self {
-            // No closure: it may be compiled by itself, without vectors.
+            // No closure: it might be compiled as a function of its own, without vector instructions.
             Self::One(surface) => Some(surface.exponent?.highlight(normal, half)),
             Self::Several(mixed) => Some(mixed.highlight(normal, half)),
         }
     }
 
-    /// Which of the hits have highlights.
+    /// Returns which of the hits have highlights; `None` if no material has any.
     #[inline(always)]
     pub fn shiny(&self, here: L::Mask) -> Option<L::Mask> {
         match self {
@@ -36,7 +36,7 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
         }
     }
 
-    /// Whether some highlight may be smaller than a pixel.
+    /// Returns whether a highlight may be smaller than a pixel.
     pub fn is_sharp(&self) -> bool {
         match self {
             Self::One(surface) => surface.size_of_highlight().is_some(),
@@ -44,7 +44,7 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
         }
     }
 
-    /// How many pixels away a highlight is, see [`Footprint::highlight_distance`].
+    /// Returns how many pixels away a highlight is, see [`Footprint::highlight_distance`].
     #[inline(always)]
     pub fn highlight_distance(&self, footprint: &Footprint<L>, off: L, light_distance: L) -> L {
         match self {
@@ -56,7 +56,7 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
         }
     }
 
-    /// The brightest that light of intensity 1 makes what is matte of it.
+    /// Returns the greatest matte brightness under a light of intensity 1, summed over the channels.
     #[inline(always)]
     pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
         match self {
@@ -65,11 +65,12 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
         }
     }
 
-    /// Where a light is seen that arrives with these cosines, the middle between it and the viewer being `half`: also
-    /// where it is so in its highlight alone.
+    /// Returns where a light is bright enough to be seen, be it only in its highlight. Given are the cosine between
+    /// normal and direction to the light, the normal, and a vector halfway between the directions to the light and
+    /// to the viewer.
     ///
-    /// Apart: few packets need it, and the others are quicker without. Of a copy: what the shading has in registers would
-    /// be in memory if a part of it had an address.
+    /// Out of line: few packets need it, and the others are faster without it. Takes `self` by value: values that
+    /// the shading keeps in registers would have to be in memory if a reference to a part of them were taken.
     #[cold]
     #[inline(never)]
     pub fn shows(

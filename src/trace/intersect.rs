@@ -1,4 +1,4 @@
-//! The nearest hit among some primitives, and whether anything stands in a ray's way.
+//! The nearest hit among primitives, and whether anything blocks a ray.
 
 use super::candidates::Targets;
 use super::doubt::Doubt;
@@ -11,11 +11,11 @@ use crate::primitive::{Blur, FAR_CAUTION, Primitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// What the kernels of a picture share: the proof that the processor has the lanes, and the plan. Without
-/// `TREE` they are compiled for plans that have no tree and are not doubted, and are faster: what may be in a list or
-/// in a tree is copied back and forth.
+/// The context that all kernels of a picture share: the SIMD token and the plan. Without `TREE`, kernels are
+/// compiled for plans that have no tree and track no doubt. These are faster, since values that may come from a list
+/// or from a tree are copied back and forth.
 pub struct Kernel<'a, L: SimdFloat, const TREE: bool> {
-    /// Proof that the processor has these vectors.
+    /// Proof that the processor supports these vectors.
     pub token: L::Token,
     /// The plan.
     pub plan: &'a Plan<L::Real>,
@@ -33,17 +33,17 @@ impl<L: SimdFloat, const TREE: bool> Clone for Kernel<'_, L, TREE> {
 
 impl<L: SimdFloat, const TREE: bool> Copy for Kernel<'_, L, TREE> {}
 
-/// The nearest primitives.
+/// The nearest primitive in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest<L> {
-    /// How far; infinity for nothing.
+    /// Distance along the ray; infinity if nothing was hit.
     pub t: L,
-    /// Number of the primitive, see [`crate::primitive::Primitives`]; [`NOTHING`] for nothing.
+    /// Number of the primitive, see [`crate::primitive::Primitives`]; [`NOTHING`] if nothing was hit.
     pub number: L,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
-    /// What stands in the plan's tree, with the number of its first primitive.
+    /// Returns what is stored in the plan's tree, with the number of its first primitive; `None` without `TREE`.
     #[inline(always)]
     pub fn geometry(self) -> Option<(&'a Geometry<L::Real>, usize)> {
         if TREE {
@@ -53,7 +53,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
         }
     }
 
-    /// What stands in the plan's tree, if it is among these.
+    /// Returns a scan of the plan's tree, if the candidates include the tree.
     #[inline(always)]
     pub fn tree_scan<'b>(
         self,
@@ -82,19 +82,20 @@ impl<'a, L: SimdFloat, const TREE: bool> Kernel<'a, L, TREE> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// The number in every lane.
+    /// Returns the number in every lane.
     #[inline(always)]
     pub fn splat(self, value: f64) -> L {
         L::splat(self.token, L::Real::from_f64(value))
     }
 
-    /// Infinity in every lane.
+    /// Returns infinity in every lane.
     #[inline(always)]
     pub fn infinity(self) -> L {
         L::splat(self.token, L::Real::INFINITY)
     }
 
-    /// The nearest primitives along the paths where the mask is set, and where that is in doubt.
+    /// Finds the nearest primitives along the paths where the mask is set. The returned mask tells where rounding
+    /// may decide which these are.
     #[inline(always)]
     pub fn nearest(
         self,
@@ -118,7 +119,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         scan_lists(self.plan, targets.candidates, paths, &mut test);
         if let Some(tree_scan) = self.tree_scan(targets, (active, blur)) {
-            // What is lent to a function of its own is in memory for good: those above are in registers.
+            // A value that is lent to an out-of-line function stays in memory; the originals can stay in registers.
             let (mut found, mut undecided) = (best, doubt);
             self.nearest_in(&tree_scan, paths, (&mut found, &mut undecided), stack);
             (best, doubt) = (found, undecided);
@@ -134,9 +135,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         (best, doubt)
     }
 
-    /// Looks in the tree for what is nearer than `best`. A function of its own: it is long, and few
-    /// scenes need it. What it finds is written where it is: the whole of it would be copied to and fro, for which the
-    /// processor waits.
+    /// Looks in the tree for primitives nearer than `best`. Out of line: it is long, and few scenes need it. The
+    /// results are written in place: returned by value, they would be copied back and forth, and the processor would
+    /// stall on that.
     #[inline(never)]
     fn nearest_in(
         self,
@@ -160,8 +161,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         );
     }
 
-    /// What stands before `distance` in the way of the paths; looked for only where `wanted`. Where something is thicker
-    /// there than `thick` is told apart, if that is given: the way is then searched until it is found.
+    /// Finds occluders of the paths nearer than `distance`, only where `wanted` is set. If `thick` is given,
+    /// occluders that are thicker are also reported by themselves, and the search goes on until one is found.
     #[inline(always)]
     pub fn blocked(
         self,
@@ -196,12 +197,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         Blocked {
             anywhere: wanted & (!way.free | way.passed | way.met),
             wide: wanted & !way.free,
-            // What may be behind the light is not looked for. What is passed by says nothing of what is wide.
+            // Possible hits behind the light do not count. A thin occluder does not settle whether there is a wide
+            // one.
             doubt: way.free & way.doubt.from.at_most(distance),
         }
     }
 
-    /// The same among what is in the tree.
+    /// Continues [`Self::blocked`] in the tree.
     #[inline(never)]
     fn way_in(
         self,
@@ -232,19 +234,19 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// What stands before something.
+/// Where paths are blocked.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocked<L: SimdFloat> {
-    /// Where anything does.
+    /// Where there is any occluder.
     pub anywhere: L::Mask,
-    /// Where something does that is not passed by.
+    /// Where there is an occluder that is thicker than the given limit, or any if there is no limit.
     pub wide: L::Mask,
-    /// Where one of both is in doubt.
+    /// Where rounding may decide one of the two.
     pub doubt: L::Mask,
 }
 
-/// Looks for the nearest primitive. Of two at the same distance it is the one with the smaller number:
-/// the first that is tested, where they are tested in order.
+/// Looks for the nearest primitive. Of two at the same distance, the one with the smaller number wins: in lists,
+/// which are tested in order, that is the first one.
 struct NearestTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
     best: &'a mut Nearest<L>,
@@ -291,27 +293,28 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
     }
 }
 
-/// Looks for anything before a distance.
+/// Looks for any primitive nearer than a distance.
 struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
     distance: L,
-    /// What is nearer than that is nearer than the distance.
+    /// Hits nearer than this are nearer than `distance` however they were rounded.
     sure: L,
-    /// How far boxes are looked for.
+    /// How far boxes are tested.
     reach: L,
-    /// What is no thicker is passed by, if that is given.
+    /// If given, primitives that are no thicker do not end the search.
     thick: Option<L>,
     way: &'a mut Way<L, TREE>,
 }
 
-/// What is known of the way before a distance.
+/// What is known so far about the paths up to the distance.
 #[derive(Clone, Copy)]
 struct Way<L: SimdFloat, const TREE: bool> {
-    /// Where nothing was met yet for sure, but what was passed by.
+    /// Where no certain hit was found yet, except on primitives that are too thin to end the search.
     free: L::Mask,
-    /// Where something was met, sure or not.
+    /// Where a hit was found, certain or not; only noted if doubt is tracked.
     met: L::Mask,
-    /// Where something was met for sure and passed by. Noted in `met`, it makes plain pictures of lists 1.06 times as slow.
+    /// Where a certain hit was found while a thickness is given. Noting it in `met` makes plain pictures of lists
+    /// 1.06 times as slow.
     passed: L::Mask,
     doubt: Doubt<L, TREE>,
 }
@@ -344,7 +347,8 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 .doubt
                 .distance::<LISTED, P>(primitive, prepared, paths, asked);
             let Some((t, from)) = distance else { return };
-            // What is met for sure leaves no doubt of itself; there may be some of what is behind it, if it is passed by.
+            // A certain hit leaves no doubt about itself; if it does not end the search, doubt about what is behind
+            // it may remain.
             let is_met = t.less(self.sure) & self.distance.less(from);
             let open = L::select(is_met, way.doubt.from, from.min(t));
             way.doubt.from = way.doubt.from.min(open);

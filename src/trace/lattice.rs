@@ -1,4 +1,4 @@
-//! The samples of a tile that its pixels share, and when a cell between them is subdivided.
+//! The samples that the pixels of a tile share, and the limits above which a cell between them is subdivided.
 
 use super::cell::Cell;
 use super::faces::may_hide_light;
@@ -10,21 +10,23 @@ use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
-/// In smaller cells than these whose corners see different things, nothing thin is looked for: an edge is known better
-/// where it crosses larger ones.
+/// Side of the smallest cells, in steps of the finest grid, that are searched for thin things although their corners
+/// see different things: an edge is located better where it crosses larger cells.
 const SLIPPED: u16 = (FINEST / 4) as u16;
 
-/// Between things there may be a gap, whatever their colours; in smaller cells than these, it is not looked for.
+/// Side of the smallest cells, in steps of the finest grid, that are searched for a gap between things of any
+/// colours.
 const HIDING: u16 = (FINEST / 8) as u16;
 
-/// What was seen at a point.
+/// The result of a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct CornerSample<R> {
-    /// Red, green and blue, and what is near: one row, so that they are handled in step.
+    /// Red, green, blue and the distance in pixels of what may slip between samples: one row, so that they are
+    /// computed in step.
     pub values: [R; 4],
-    /// Equal where the same is seen.
+    /// Equal where the same things were hit and lit.
     pub signature: u32,
-    /// The shadows that end near there, see [`super::shadows`].
+    /// The shadows that the point is in and that end near it, see [`super::shadows`].
     pub shadows: u32,
 }
 
@@ -40,48 +42,48 @@ impl<R: Real> CornerSample<R> {
     }
 }
 
-/// Samples on the finest grid of a tile that are shared by the cells around them.
+/// Samples on the finest grid of a tile, shared by the cells around them.
 #[derive(Debug)]
 pub struct Lattice<R> {
-    /// The points that have a sample or are wanted.
+    /// The points that have a sample or for which one was requested.
     points: PointTable,
-    /// In order of their points.
+    /// In the order of their points.
     samples: Vec<CornerSample<R>>,
-    /// The faces that the first of them are on, see [`super::faces`], in scenes with some.
+    /// The faces that the first samples are on, see [`super::faces`]; empty in scenes without faces.
     faces: Vec<u64>,
 }
 
-/// What is inside of a cell, as far as its corners tell.
+/// What the corners of a cell tell about its inside.
 pub enum Inside {
-    /// About their mean.
+    /// Close to the mean of the corners.
     Known,
-    /// One thing of some colours.
+    /// One thing, in several colours.
     One,
     /// Several things.
     Several,
-    /// Perhaps what they do not know of.
+    /// Possibly something that no corner sees.
     Anything,
 }
 
-/// The largest difference of four numbers.
+/// Returns the largest difference between any two of four numbers.
 #[inline(always)]
 pub fn range<L: SimdFloat>(a: L, b: L, c: L, d: L) -> L {
     a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
 }
 
-/// When cells are subdivided.
+/// The limits above which cells are subdivided.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits<R> {
-    /// Difference of the corners of a cell, summed over the channels, above which it is subdivided.
+    /// Difference between the corners of a cell, summed over the channels, above which it is subdivided.
     contrast: R,
-    /// The same, times the side of the cell in pixels, where they see different things.
+    /// The same for corners that see different things, times the side of the cell in pixels.
     edge_contrast: R,
     /// How often a pixel is subdivided, not counting the last time.
     depth: u32,
 }
 
 impl<R: Real> Limits<R> {
-    /// With these limits for cells whose corners see the same.
+    /// Creates limits from the contrast for cells whose corners see the same, and the depth.
     pub fn new(contrast: f64, depth: u32) -> Self {
         Self {
             contrast: R::from_f64(contrast),
@@ -90,7 +92,7 @@ impl<R: Real> Limits<R> {
         }
     }
 
-    /// For cells of a side in pixels: the smaller they are, the more their corners may differ.
+    /// Returns the limits for cells of a side in pixels: the smaller they are, the more their corners may differ.
     #[inline(always)]
     fn at(self, side: R) -> Self {
         let edge_contrast = self.edge_contrast / side;
@@ -101,13 +103,13 @@ impl<R: Real> Limits<R> {
         }
     }
 
-    /// The side of the smallest cells, in steps of the finest grid.
+    /// Returns the side of the smallest cells, in steps of the finest grid.
     pub fn least_side(self) -> u16 {
         (FINEST >> (self.depth + 1)) as u16
     }
 
-    /// How many samples are taken in a pixel that has too much in it to be divided, and the step between them, see
-    /// [`SPREAD_OUT`].
+    /// Returns how many samples are taken in a pixel that is too crowded to be divided, and the step between them,
+    /// see [`SPREAD_OUT`].
     pub fn spread_out(self) -> (usize, usize) {
         let cells = FINEST / usize::from(self.least_side());
         let mut lattices = SPREAD_OUT.iter();
@@ -115,14 +117,14 @@ impl<R: Real> Limits<R> {
         lattice.map_or((1, 1), |(_, lattice)| *lattice)
     }
 
-    /// The contrast above which a cell is subdivided whose corners see the same.
+    /// Returns the contrast above which a cell whose corners see the same is subdivided, by its side in pixels.
     pub fn contrast_of_same(self, side: f64) -> R {
         self.at(R::from_f64(side)).contrast(true)
     }
 
-    /// The contrast of the corners of a cell above which its inside must be looked at, by whether they see
-    /// the same. It must be as well where something thin is near: corners say nothing of what passes between them,
-    /// whether they see the same, others of the same kind, or neither.
+    /// Returns the contrast of a cell's corners above which its inside must be examined, by whether they see the
+    /// same. Near something thin it must be examined at any contrast: corners tell nothing about what passes between
+    /// them, whether they see the same thing, others of the same kind, or neither.
     #[inline(always)]
     pub fn contrast(self, is_same: bool) -> R {
         if is_same {
@@ -134,7 +136,7 @@ impl<R: Real> Limits<R> {
 }
 
 impl<R: Real> Lattice<R> {
-    /// No samples.
+    /// Creates a lattice without samples.
     pub fn new() -> Self {
         Self {
             points: PointTable::new(),
@@ -143,14 +145,15 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// Forgets the tile before.
+    /// Removes the samples of the previous tile.
     pub fn clear(&mut self) {
         self.points.clear();
         self.samples.clear();
         self.faces.clear();
     }
 
-    /// Adds the corners of these pixels, among those of all; nothing is wanted then that is not there yet.
+    /// Adds the corners of `pixels`, taken from those of the whole tile. No point may lack its sample when this is
+    /// called.
     #[inline(always)]
     pub fn add(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
         for pixel in pixels {
@@ -167,13 +170,13 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// Makes sure that there will be a sample at a point of the grid: its index.
+    /// Requests a sample at a point of the grid and returns its index.
     #[inline(always)]
     pub fn want(&mut self, x: u16, y: u16) -> u32 {
         self.points.number(x, y)
     }
 
-    /// `samples` become those that are wanted and not there yet.
+    /// Fills `samples` with the points that were requested and have no sample yet.
     pub fn wanted_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
         let step = 1.0 / FINEST as f64;
@@ -185,7 +188,7 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// Adds what was seen at the points that were wanted last.
+    /// Appends the results for the points that were requested last.
     #[inline(always)]
     pub fn take_results(&mut self, traced: &Traced<R>) {
         let new = (0..traced.count).map(|index| CornerSample::of(traced, index));
@@ -194,8 +197,8 @@ impl<R: Real> Lattice<R> {
         self.faces.extend(faces);
     }
 
-    /// Notes of cells whose corners are among the first samples, or those that were taken next, whether there may be
-    /// light between them that no corner has seen, where all see the same.
+    /// Notes for cells whose corners all see the same whether there may be light between them that no corner has
+    /// seen. The corners must be among the first samples or those taken right after: only for them faces are known.
     pub fn note_hidden_light(&self, cells: &mut [Cell]) {
         for cell in cells {
             let [a, b, c, d] = self.corners(cell).map(|sample| sample.signature);
@@ -204,19 +207,19 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// How many samples there are.
+    /// The number of samples.
     pub fn len(&self) -> usize {
         self.samples.len()
     }
 
-    /// Where a sample is on the finest grid.
+    /// Returns where a sample is on the finest grid.
     #[inline(always)]
     pub fn point(&self, index: usize) -> [u16; 2] {
         self.points.from(index)[0]
     }
 
-    /// How far, summed over the channels, the colour of a sample is from all between those at two points; 0 where one of
-    /// those is not known.
+    /// Returns how far the colour of a sample lies outside of the range between the colours at two points, summed
+    /// over the channels; 0 if one of those is unknown.
     pub fn excess(&self, sample: usize, ends: [[u16; 2]; 2]) -> R {
         let at = |[x, y]: [u16; 2]| Some(&self.samples[self.points.find(x, y)? as usize]);
         let [Some(a), Some(b)] = ends.map(at) else {
@@ -231,13 +234,13 @@ impl<R: Real> Lattice<R> {
         sum
     }
 
-    /// A sample by its index.
+    /// The sample with an index.
     #[inline(always)]
     pub fn sample(&self, index: u32) -> &CornerSample<R> {
         &self.samples[index as usize]
     }
 
-    /// The samples at the corners of a cell. Written out: mapping an array is a call there.
+    /// Returns the samples at the corners of a cell. Written out: mapping an array is a function call here.
     #[inline(always)]
     pub fn corners(&self, cell: &Cell) -> [&CornerSample<R>; 4] {
         let [a, b, c, d] = cell.corners;
@@ -245,7 +248,7 @@ impl<R: Real> Lattice<R> {
         [at(a), at(b), at(c), at(d)]
     }
 
-    /// Whether something may have slipped between the corners of a cell.
+    /// Returns whether something may have slipped between the corners of a cell.
     #[inline(always)]
     pub fn is_near(&self, cell: &Cell) -> bool {
         let [a, b, c, d] = self.corners(cell);
@@ -254,7 +257,7 @@ impl<R: Real> Lattice<R> {
         cell.looked == EdgeDetail::Near && least < R::from_f64(NEAR * cell.width())
     }
 
-    /// What must be known of a cell.
+    /// Returns what the corners of a cell tell about its inside.
     #[inline(always)]
     pub fn inside(&self, cell: &Cell, limits: Limits<R>) -> Inside {
         if cell.side <= limits.least_side() {
@@ -283,7 +286,8 @@ impl<R: Real> Lattice<R> {
         }
     }
 
-    /// Whether the colours at the corners of a cell, which see the same or not, differ by more than they may.
+    /// Returns whether the colours at the corners of a cell differ by more than allowed, given whether they see the
+    /// same.
     #[inline(always)]
     fn has_contrast(&self, cell: &Cell, (limits, is_one): (Limits<R>, bool)) -> bool {
         let [a, b, c, d] = self.corners(cell);
@@ -298,7 +302,7 @@ impl<R: Real> Lattice<R> {
         limit < contrast
     }
 
-    /// Whether the corners of a cell see different things, or colours that differ by more than they may.
+    /// Returns whether the corners of a cell see different things, or colours that differ by more than allowed.
     pub fn differs(&self, cell: &Cell, limits: Limits<R>) -> bool {
         let [a, b, c, d] = self.corners(cell);
         let differing =
@@ -306,8 +310,8 @@ impl<R: Real> Lattice<R> {
         differing & THING != 0 || self.has_contrast(cell, (limits, differing == 0))
     }
 
-    /// Whether light of two lamps or of none may be hidden between the corners of a pixel. Of smaller cells nobody knows:
-    /// what is noted at their corners depends on what was looked at together.
+    /// Returns whether light of two lights or of neither may be hidden between the corners of a pixel. Unknown for
+    /// smaller cells: which shadows are noted at their corners depends on which samples were traced together.
     #[inline(always)]
     pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
         let [a, b, c, d] = self.corners(pixel);
@@ -315,14 +319,14 @@ impl<R: Real> Lattice<R> {
         EdgeDetail::Bordered <= pixel.looked && shadows != [0; 4] && may_swap_lights(shadows)
     }
 
-    /// Makes sure that there will be a sample in the middle of a cell: its index.
+    /// Requests a sample in the middle of a cell and returns its index.
     pub fn want_middle(&mut self, cell: &Cell) -> u32 {
         let half = cell.side / 2;
         self.want(cell.x + half, cell.y + half)
     }
 
-    /// Adds the colour of a cell whose corners see the same to its pixel, if its middle does too and has nearly their
-    /// mean colour, and no corner stands out: then it changes evenly between them.
+    /// Adds the colour of a cell whose corners see the same to its pixel, if the colour changes evenly: the middle
+    /// sees the same in nearly their mean colour, and no corner stands out. Returns whether it does.
     pub fn accumulate_even(
         &self,
         (cell, middle): (&Cell, u32),
@@ -355,7 +359,7 @@ impl<R: Real> Lattice<R> {
         is_even
     }
 
-    /// Adds the mean of a cell's corners to its pixel, by its area.
+    /// Adds the mean of a cell's corners to its pixel, weighted by the area of the cell.
     #[inline(always)]
     pub fn accumulate(&self, cell: &Cell, colors: &mut TileColors<R>) {
         let quarter = R::from_f64(0.25);
@@ -369,7 +373,7 @@ impl<R: Real> Lattice<R> {
         cell.add_color(mean, colors);
     }
 
-    /// Puts the four quarters of a cell into `cells`, and wants their corners.
+    /// Appends the four quarters of a cell to `cells` and requests their corners.
     #[inline(always)]
     pub fn subdivide(&mut self, cell: &Cell, cells: &mut Vec<Cell>) {
         let half = cell.side / 2;
@@ -405,7 +409,7 @@ mod tests {
     use super::*;
     use crate::scene::Sampling;
 
-    /// Whether a pixel with these levels at its corners and in its middle is taken to change evenly.
+    /// Returns whether a pixel with these levels at its corners and in its middle counts as changing evenly.
     fn is_even(corners: [f64; 4], middle: f64) -> bool {
         let Sampling::Adaptive { contrast, depth } = Sampling::ADAPTIVE else {
             unreachable!("it is adaptive")

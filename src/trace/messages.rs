@@ -1,8 +1,9 @@
-//! What pixels are told by samples beside them, across the borders of tiles.
+//! Messages from samples to the pixels beside them, across the borders of tiles: such a sample has seen something
+//! that the colour of the pixel misses.
 //!
-//! Which pixels are divided for that does not depend on tiles or threads: a pixel that was told something is divided in
-//! one way, whatever it was, which only adds samples, and these may tell others. Where that ends is the same in whichever
-//! order it is done.
+//! Which pixels are divided because of messages depends on neither tiles nor threads: a pixel that receives any
+//! message is divided in the same way, whatever the message was. That only adds samples, which may send more
+//! messages. The outcome is the same in whichever order they are handled.
 
 use std::collections::BTreeSet;
 use std::mem::take;
@@ -10,41 +11,41 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// The bit of the upper side of a pixel.
+/// The bit of a pixel's upper side.
 pub const ABOVE: u8 = 1;
-/// That of the left one.
+/// The bit of the left side.
 pub const LEFT: u8 = 2;
-/// That of the lower one.
+/// The bit of the lower side.
 pub const BELOW: u8 = 4;
-/// That of the right one.
+/// The bit of the right side.
 pub const RIGHT: u8 = 8;
-/// All of them.
+/// The bits of all sides.
 pub const ALL: u8 = ABOVE | LEFT | BELOW | RIGHT;
 
-/// Something for a pixel: its row and column, and the side that tells.
+/// A message to a pixel: its row and column, and the side that the message comes from.
 type Message = ([usize; 2], u8);
 
-/// What the pixels of a picture, or of rows of it, know and are told.
+/// The messages to the pixels of a picture, or of some rows of it, and what these pixels know already.
 #[derive(Debug)]
 pub struct EdgeMessages {
     width: usize,
     rows: Range<usize>,
-    /// The sides of each that have nothing more to tell, bit by bit.
+    /// For each pixel, the sides from which it can learn nothing more, bit by bit.
     known: Vec<AtomicU8>,
     waiting: Mutex<Vec<Message>>,
 }
 
-/// What the pixels of a band are told.
+/// The messages to the pixels of a band.
 #[derive(Clone, Copy, Debug)]
 pub struct BandMessages<'a> {
-    /// By whom.
+    /// All messages of the picture.
     pub messages: &'a EdgeMessages,
-    /// Those that were told something, by row and column, if only these are traced.
+    /// The pixels that have received messages, by row and column, if only these are traced.
     pub those: Option<&'a [[usize; 2]]>,
 }
 
 impl<'a> BandMessages<'a> {
-    /// Of all pixels.
+    /// For a band of which all pixels are traced.
     pub fn all(messages: &'a EdgeMessages) -> Self {
         Self {
             messages,
@@ -54,7 +55,7 @@ impl<'a> BandMessages<'a> {
 }
 
 impl EdgeMessages {
-    /// Nothing yet, for these rows of so many pixels.
+    /// Creates an empty exchange for these rows, of `width` pixels each.
     pub fn new(width: usize, rows: Range<usize>) -> Self {
         let pixels = width * rows.len();
         Self {
@@ -65,29 +66,30 @@ impl EdgeMessages {
         }
     }
 
-    /// How many pixels there are in a row.
+    /// The number of pixels in a row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Whether there is a row.
+    /// Returns whether a row is among these.
     pub fn has(&self, row: usize) -> bool {
         self.rows.contains(&row)
     }
 
-    /// The sides of the pixels in these columns of a row that have nothing more to tell.
+    /// The sides from which the pixels in these columns of a row can learn nothing more.
     pub fn row(&self, row: usize, columns: &Range<usize>) -> &[AtomicU8] {
         let first = (row - self.rows.start) * self.width;
         &self.known[first + columns.start..first + columns.end]
     }
 
-    /// Tells a pixel something from one of its sides.
+    /// Sends a message to a pixel from one of its sides.
     pub fn send(&self, pixel: [usize; 2], side: u8) {
         let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
         waiting.push((pixel, side));
     }
 
-    /// The pixels that were told what they do not know, row by row, once.
+    /// Takes the messages that are waiting and returns the pixels that learn something from them, row by row, each
+    /// once.
     pub fn received(&mut self) -> BTreeSet<[usize; 2]> {
         let waiting = self
             .waiting

@@ -1,24 +1,24 @@
-//! Rays that mirrors send on.
+//! Rays that mirrors reflect.
 
 use super::footprint::RayCone;
 use super::paths::Paths;
 use crate::primitive::Ray;
 use crate::simd::{SimdFloat, Vec3};
 
-/// Rays that a mirror sends on, or several.
+/// Rays that one or several mirrors reflect.
 pub struct Mirrored<L: SimdFloat> {
-    /// Where there are some.
+    /// Where there is a ray.
     pub active: L::Mask,
-    /// What their colours are multiplied by.
+    /// The factors that their colours are multiplied by.
     pub filter: Vec3<L>,
     /// The rays.
     pub paths: Paths<L>,
-    /// How wide a pixel is along them, where edges are noted.
+    /// The width of a pixel along them, if edges are noted.
     pub cone: Option<RayCone<L>>,
 }
 
 impl<L: SimdFloat> Mirrored<L> {
-    /// These and those of other mirrors as one packet.
+    /// Merges these and the rays of other mirrors into one packet.
     #[inline(always)]
     #[must_use]
     pub fn joined(self, before: Option<Self>) -> Self {

@@ -1,7 +1,7 @@
-//! What hits are made of that are lit as one, where it is not one material.
+//! The materials of hits that are lit together, if there are several.
 //!
-//! Functions of their own: few packets need them, and a compiler that finds a loop over materials between the
-//! lights works out all that any of them may need before it looks which there are.
+//! Out-of-line functions: few packets need them, and a compiler that finds a loop over materials between the lights
+//! computes everything that any material may need before it checks which ones there are.
 
 use super::footprint::Footprint;
 use crate::plan::{Material, Plan, Show, Surface};
@@ -9,16 +9,16 @@ use crate::simd::{Exponent, MAX_LANES, Real, SimdFloat, Vec3};
 
 /// The light that arrives, summed over the lights.
 pub struct ArrivingLight<L: SimdFloat> {
-    /// Σ intensity · n·l, what matte colours are multiplied by.
+    /// Σ intensity · n·l, the factor of matte colours.
     pub matte: L,
-    /// Σ intensity · (n·h)^p, what the colours of highlights are multiplied by.
+    /// Σ intensity · (n·h)^p, the factor of highlight colours.
     pub highlight: L,
-    /// Where rounding may decide whether something of it does.
+    /// Where rounding may decide whether some of it arrives.
     pub doubt: L::Mask,
 }
 
 impl<L: SimdFloat> ArrivingLight<L> {
-    /// What it adds to the colour of a surface.
+    /// Returns what the light adds to the colour of a surface.
     #[inline(always)]
     pub fn color(&self, surface: &Surface<L::Real>, show: Show<L::Real>) -> Vec3<L> {
         if let Show::Shadows(_) = show {
@@ -29,18 +29,18 @@ impl<L: SimdFloat> ArrivingLight<L> {
     }
 }
 
-/// Materials, and where they are.
+/// Materials, and the hits on each.
 pub struct MixedMaterials<L: SimdFloat> {
-    /// Each with its index into [`crate::plan::Plan::materials`].
+    /// The hits, and the index into [`crate::plan::Plan::materials`].
     materials: Vec<(L::Mask, u32)>,
-    /// The exponents of highlights.
+    /// The hits, and the exponent of their highlights.
     exponents: Vec<(L::Mask, Exponent)>,
-    /// Where there are any; known with the base colours.
+    /// Which hits have highlights; `None` before [`Self::set_base`].
     pub shiny: Option<L::Mask>,
 }
 
 impl<L: SimdFloat> MixedMaterials<L> {
-    /// None, and room for those of a packet.
+    /// Creates an empty list with room for the materials of a packet.
     pub fn new() -> Self {
         Self {
             materials: Vec::with_capacity(MAX_LANES),
@@ -49,25 +49,25 @@ impl<L: SimdFloat> MixedMaterials<L> {
         }
     }
 
-    /// Forgets all.
+    /// Removes all materials.
     pub fn clear(&mut self) {
         self.materials.clear();
         self.exponents.clear();
         self.shiny = None;
     }
 
-    /// Adds hits on a material.
+    /// Adds a material, and the hits on it.
     pub fn add(&mut self, here: L::Mask, material: u32) {
         self.materials.push((here, material));
     }
 
-    /// Whether there is more than one.
+    /// Returns whether there is more than one material.
     pub fn are_several(&self) -> bool {
         self.materials.len() > 1
     }
 
-    /// Sets the colours that the materials have without light, or those in their place. Where light falls on them,
-    /// if anywhere.
+    /// Sets `color` to the colours that the materials have without light, or to `instead` if given. Returns which
+    /// hits respond to light; `None` if none does.
     #[inline(never)]
     pub fn set_base(
         &mut self,
@@ -117,7 +117,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         })
     }
 
-    /// Adds the light that arrives.
+    /// Adds the arriving light to the colours.
     #[inline(never)]
     pub fn color(&self, plan: &Plan<L::Real>, arriving: &ArrivingLight<L>, color: &mut Vec3<L>) {
         L::vectorize(
@@ -132,7 +132,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         );
     }
 
-    /// Where there are mirrors, and what their images are multiplied by.
+    /// Returns where there are mirrors, and the factors that their images are multiplied by.
     #[inline(never)]
     pub fn mirror(&self, plan: &Plan<L::Real>, like: L) -> Option<(L::Mask, Vec3<L>)> {
         L::vectorize(
@@ -155,7 +155,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         )
     }
 
-    /// The sum of the channels of the matte colours.
+    /// Returns the matte brightness: the sum of the channels of the matte colours.
     #[inline(never)]
     pub fn brightness(&self, plan: &Plan<L::Real>, like: L) -> L {
         L::vectorize(
@@ -171,7 +171,8 @@ impl<L: SimdFloat> MixedMaterials<L> {
         )
     }
 
-    /// What light of intensity 1 adds, all channels together, see [`super::hit_material::HitMaterial::shows`].
+    /// Returns what light of intensity 1 adds, summed over the channels, see
+    /// [`super::hit_material::HitMaterial::shows`].
     #[inline(never)]
     pub fn glow(&self, plan: &Plan<L::Real>, (cosine, normal, half): (L, Vec3<L>, Vec3<L>)) -> L {
         L::vectorize(
@@ -188,7 +189,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         )
     }
 
-    /// Each ray's highlight, see [`Exponent::highlight`].
+    /// Returns each ray's highlight, see [`Exponent::highlight`].
     #[inline(never)]
     pub fn highlight(&self, normal: Vec3<L>, half: Vec3<L>) -> L {
         L::vectorize(
@@ -205,7 +206,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         )
     }
 
-    /// How many pixels away each ray's highlight is, if it may be smaller than a pixel; see
+    /// Returns how many pixels away each ray's highlight is, if it may be smaller than a pixel; see
     /// [`Footprint::highlight_distance`].
     #[inline(never)]
     pub fn highlight_distance(&self, footprint: &Footprint<L>, off: L, light_distance: L) -> L {
@@ -225,7 +226,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
         )
     }
 
-    /// Whether some highlight may be smaller than a pixel.
+    /// Returns whether a highlight may be smaller than a pixel.
     pub fn is_any_sharp(&self) -> bool {
         let mut exponents = self.exponents.iter();
         exponents.any(|(_, exponent)| exponent.size().is_some())

@@ -1,10 +1,10 @@
-//! What runs per ray and per tile. Knows no file and no pixel format.
+//! Everything that runs per ray and per tile. Independent of files and pixel formats.
 //!
-//! The files stand in the order of their dependence. From below: counters, control and thresholds, tiles and
-//! samples; which primitives to test and the tests, what lies at a hit, the footprint of a pixel and
-//! what is thin in it; packets of rays, what a beam of them can meet, and their colours; one bounce, all
-//! bounces, the pixels; the tracer, which shares tiles between threads; and questions to a scene that
-//! need no picture.
+//! The modules are listed in the order of their dependencies. From the bottom: counters, control and thresholds;
+//! tiles and samples; the choice of primitives to test, the tests, the properties of a hit, the footprint of a pixel
+//! and the search for what is thin in it; packets of rays, what a beam of them can meet, and their colours; one
+//! bounce, all bounces, the pixels; the tracer, which shares tiles between threads; and queries of a scene that need
+//! no picture.
 
 mod stats;
 

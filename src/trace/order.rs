@@ -1,5 +1,5 @@
-//! Hits put in order, so that those in one packet are close to each other: neighbours in the picture may be far apart
-//! in the scene, and their rays to a light then have little in common.
+//! Sorting of hits so that those of a packet are close together: neighbours in the picture may be far apart in the
+//! scene, and their shadow rays then have little in common.
 
 use super::beam::Bounds;
 use super::doubt::Uncertainty;
@@ -12,12 +12,12 @@ use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 /// Cells along each axis of the box around all hits.
 const CELLS: f64 = 16.0;
-/// Bits of a key: four for each axis, and what was hit.
+/// Bits of a key: four per axis, and two for the kind of hit.
 const BITS: u32 = 14;
-/// Keys that a pass of sorting tells apart.
+/// Number of keys that a pass of sorting tells apart.
 const BUCKETS: usize = 1 << (BITS / 2);
 
-/// For each number of a cell along an axis its bits, three apart.
+/// The bits of each cell number along an axis, moved three apart.
 const SPREAD: [u16; CELLS as usize] = {
     let mut spread = [0; CELLS as usize];
     let mut cell = 0;
@@ -29,30 +29,30 @@ const SPREAD: [u16; CELLS as usize] = {
     spread
 };
 
-/// Hits are scattered where those of a packet differ in distance by more than this share of what all of a tile do;
-/// on a surface it is a quarter.
+/// Hits count as scattered if their distances within a packet differ, on average, by more than this share of the
+/// range in the whole tile; on a surface it is a quarter.
 const SCATTERED: f64 = 0.4;
 
-/// What was hit, and where, sample by sample; memory that is used again.
+/// The hits of each sample, and the order of the samples. The memory is reused.
 #[derive(Debug, Default)]
 pub struct Order<R> {
-    /// How far the hits are.
+    /// Distances of the hits.
     t: Vec<R>,
-    /// The numbers of what was hit.
+    /// Numbers of the primitives that were hit.
     number: Vec<R>,
-    /// 1 where that is in doubt, else 0.
+    /// 1 where the hit is in doubt, else 0.
     doubt: Vec<R>,
-    /// Where the hits are, in cells.
+    /// Places of the hits, in cells.
     cells: [Vec<R>; 3],
     keys: Vec<u16>,
-    /// For each lane of the packets in their order, the sample that it is; empty where that is the order of the
+    /// For each lane of the sorted packets, the index of its sample; empty if packets are in the order of the
     /// samples.
     pub samples: Vec<u32>,
     other: Vec<u32>,
 }
 
 impl<R: Real> Order<R> {
-    /// Forgets the samples before.
+    /// Removes all samples.
     pub fn clear(&mut self) {
         self.samples.clear();
         self.t.clear();
@@ -61,8 +61,7 @@ impl<R: Real> Order<R> {
         self.cells.iter_mut().for_each(Vec::clear);
     }
 
-    /// Puts the hits of the camera's rays through samples into packets of those that are close to each other, if
-    /// they are not.
+    /// Regroups the hits of camera rays into packets whose hits are close together, if they are scattered.
     #[inline(always)]
     pub fn arrange<L: SimdFloat<Real = R>, const TREE: bool>(
         &mut self,
@@ -104,7 +103,7 @@ impl<R: Real> Order<R> {
         }
     }
 
-    /// Adds the hits of a packet, of which all are in the box.
+    /// Adds the hits of a packet; `around` is the box around all hits.
     #[inline(always)]
     fn add<L: SimdFloat<Real = R>>(
         &mut self,
@@ -129,9 +128,10 @@ impl<R: Real> Order<R> {
         push(&mut self.number, number);
     }
 
-    /// Finds the order: what is in lists first, since all that is alike in a packet is lit as one; then the tree,
-    /// whose first number is given, cell by cell along a curve that fills space (Morton, "A computer oriented
-    /// geodetic data base and a new technique in file sequencing", IBM, 1966); then what has met nothing.
+    /// Computes the order: hits on primitives in lists first, since all hits of a packet that are alike are lit
+    /// together; then hits in the tree, whose first number is given, cell by cell along a space-filling curve
+    /// (Morton, "A computer oriented geodetic data base and a new technique in file sequencing", IBM, 1966); then
+    /// misses.
     fn find(&mut self, count: usize, first: usize) {
         self.keys.clear();
         let first = R::from_f64(first as f64);
@@ -155,7 +155,7 @@ impl<R: Real> Order<R> {
         }
     }
 
-    /// Sorts the samples by half of the bits of their keys; those that are equal in them stay in their order.
+    /// Sorts the samples by half of the bits of their keys; samples with equal bits keep their order.
     fn sort_by_half(&mut self, shift: u32) {
         let bucket = |key: u16| (key >> shift) as usize & (BUCKETS - 1);
         let mut starts = [0_u32; BUCKETS + 1];
@@ -175,7 +175,7 @@ impl<R: Real> Order<R> {
         std::mem::swap(&mut self.samples, &mut self.other);
     }
 
-    /// The samples that the lanes of a packet are, of which the first is given.
+    /// Returns the sample indices of the lanes of a packet that begins at `first`.
     #[inline(always)]
     fn numbers<L: SimdFloat<Real = R>>(&self, token: L::Token, first: usize) -> L {
         let mut lanes = [R::ZERO; MAX_LANES];
@@ -185,7 +185,7 @@ impl<R: Real> Order<R> {
         L::load(token, &lanes)
     }
 
-    /// The numbers of a column that belong to the lanes of a packet, of which the first is given.
+    /// Returns the values of a column for the lanes of a packet that begins at `first`.
     #[inline(always)]
     fn gather<L: SimdFloat<Real = R>>(&self, token: L::Token, column: &[R], first: usize) -> L {
         let mut lanes = [R::ZERO; MAX_LANES];
@@ -196,7 +196,7 @@ impl<R: Real> Order<R> {
     }
 }
 
-/// The box around all hits.
+/// Returns the box around all hits, lane by lane.
 #[inline(always)]
 fn bounds_of<L: SimdFloat, const TREE: bool>(
     kernel: Kernel<L, TREE>,
@@ -213,7 +213,7 @@ fn bounds_of<L: SimdFloat, const TREE: bool>(
     bounds
 }
 
-/// Whether the hits of packets are at nearly as different distances as those of all.
+/// Returns whether the distances of hits differ within packets nearly as much as in the whole tile.
 #[inline(always)]
 fn is_scattered<L: SimdFloat, const TREE: bool>(
     kernel: Kernel<L, TREE>,
@@ -255,7 +255,7 @@ mod tests {
             low: Vec3::splat(0.0),
             high: Vec3::new(16.0, 16.0, 4.0),
         };
-        // A miss, two corners of the tree in turn, and the list.
+        // A miss, hits in two corners of the tree in turn, and one in the list.
         let hits = [
             (-1.0, 3.0),
             (7.0, 15.5),
@@ -269,7 +269,7 @@ mod tests {
         }
         order.find(hits.len(), 5);
         assert_eq!(order.samples, [5, 2, 4, 1, 3, 0]);
-        // What fills the last packet up is no hit.
+        // The padding of the last packet counts as misses.
         order.find(4, 5);
         assert_eq!(order.samples, [2, 1, 3, 4, 0, 5]);
     }

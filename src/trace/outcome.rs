@@ -1,4 +1,4 @@
-//! What packets have found out, sample by sample.
+//! The results of packets, sample by sample.
 
 use super::packet::{EdgeInfo, Packet};
 use super::paths::NOTHING;
@@ -7,7 +7,7 @@ use super::shadows::joined as joined_shadows;
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
-/// For each ray of a packet what it has hit and which lights shine on it, as one number.
+/// Returns a number for each ray of a packet that identifies what it has hit and which lights shine there.
 #[inline(always)]
 pub fn signatures_of<L: SimdFloat>(
     plan: &Plan<L::Real>,
@@ -19,14 +19,14 @@ pub fn signatures_of<L: SimdFloat>(
     packet.near.number.store(&mut numbers);
     edge.lit.store(&mut lit);
     let mut signatures = [0; MAX_LANES];
-    // Loops of their own: all lanes go in step where nothing is called.
+    // Separate loops: without calls, all lanes are computed in step.
     if plan.geometry.is_none() && plan.primitives.things.is_empty() {
         for lane in 0..L::WIDTH {
             let object = (numbers[lane] + L::Real::ONE).nearest();
             signatures[lane] = signature_of(object, lit[lane]);
         }
     } else {
-        // Those of rays beside each other are often the same.
+        // Neighbouring rays often hit the same primitive.
         let (mut last, mut object) = (L::Real::from_f64(NOTHING), 0);
         for lane in 0..L::WIDTH {
             if numbers[lane] != last {
@@ -38,7 +38,7 @@ pub fn signatures_of<L: SimdFloat>(
     signatures
 }
 
-/// An object and the lights on it as one number: odd multipliers spread small ones over all bits.
+/// Combines an object and the lights on it into one number: odd multipliers spread small numbers over all bits.
 #[inline(always)]
 fn signature_of<R: Real>(object: u32, lit: R) -> u32 {
     let object = object.wrapping_mul(0x9E37_79B1);
@@ -46,29 +46,29 @@ fn signature_of<R: Real>(object: u32, lit: R) -> u32 {
     object & THING | folded(mixed)
 }
 
-/// A signature together with that of what is seen in its mirror: that is no thing of its own, since in curved mirrors
-/// each pixel shows another.
+/// Combines a signature with that of what is seen in the mirror. The bits of the thing stay those of the mirror
+/// itself, since in curved mirrors each pixel shows another thing.
 #[inline(always)]
 pub fn joined(own: u32, mirrored: u32) -> u32 {
     own & THING | folded(own.rotate_left(11) ^ mirrored)
 }
 
-/// All bits of a number in those that do not tell things.
+/// Folds all bits of a number into those that do not identify things.
 #[inline(always)]
 fn folded(mixed: u32) -> u32 {
     (mixed ^ mixed >> 16) & !THING
 }
 
-/// What tells objects apart, by the number of a primitive: the faces of a mesh that hang together are one thing.
+/// Returns a number that identifies the object of a primitive: connected faces of a mesh count as one thing.
 #[inline(always)]
 fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
-    // Faces have numbers that `nearest` is not made for.
+    // The numbers of faces may be too large for `nearest`.
     let number = ((number.to_f64() + 1.0) as usize).checked_sub(1);
     number.map_or(0, |number| thing_of(plan, number) as u32 + 1)
 }
 
-/// The number of the first primitive that one of this number is one thing with. Not inlined: in the kernels it costs the
-/// demo, which does not ask, a tenth of its clean edges.
+/// Returns the number of the first primitive of the thing that a primitive belongs to. Not inlined: in the kernels,
+/// it would slow down the clean edges of the demo, which does not need it, by a tenth.
 #[inline(never)]
 fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
@@ -82,7 +82,7 @@ fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
 }
 
-/// Writes which shadows each ray of a packet has found to end near it. Most have found none.
+/// Writes for each ray of a packet the shadows that its hit is in and that end near it. Most rays have none.
 #[inline(always)]
 fn shadows_of<L: SimdFloat>(edge: &EdgeInfo<L>, shadows: &mut [u32]) {
     shadows.fill(0);
@@ -119,7 +119,7 @@ pub fn store<L: SimdFloat>(
     }
 }
 
-/// A colour within 0–1.
+/// Clamps a colour to 0–1.
 #[inline(always)]
 pub fn clamped<L: SimdFloat>(color: Vec3<L>) -> Vec3<L> {
     color.clamp(color.x.like(L::Real::ZERO), color.x.like(L::Real::ONE))

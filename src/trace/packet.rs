@@ -1,4 +1,4 @@
-//! Rays that travel in step, and what goes with them.
+//! Packets of rays, and what is noted of them.
 
 use super::doubt::Uncertainty;
 use super::footprint::RayCone;
@@ -7,14 +7,14 @@ use super::paths::{IgnoredPrimitive, NOTHING};
 use crate::primitive::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// Rays that are traced in step, what they meet and what they bring back.
+/// Rays that are traced in step, what they hit and the colours that they bring back.
 #[derive(Clone, Copy)]
 pub struct Packet<L: SimdFloat> {
     /// The rays.
     pub rays: Ray<L>,
     /// Where there is a ray.
     pub active: L::Mask,
-    /// What they meet first.
+    /// What they hit first.
     pub near: Nearest<L>,
     /// Linear colours, 0–1.
     pub color: Vec3<L>,
@@ -23,31 +23,31 @@ pub struct Packet<L: SimdFloat> {
 /// Where mirrored rays come from.
 #[derive(Clone, Copy)]
 pub struct ReflectionParent<L: SimdFloat> {
-    /// Index of the packet in the bounce before.
+    /// Index of the packet in the previous bounce.
     pub packet: usize,
-    /// What they start on.
+    /// The primitives that they start on.
     pub ignored: IgnoredPrimitive<L>,
-    /// What their colours are multiplied by.
+    /// The factors that their colours are multiplied by.
     pub filter: Vec3<L>,
 }
 
-/// What samples know of the edges around them.
+/// What is known about the edges around samples.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeInfo<L> {
-    /// How wide a pixel is along the rays.
+    /// The width of a pixel along the rays.
     pub cone: RayCone<L>,
-    /// The sum of 2ⁱ over the lights i that shine on what was hit.
+    /// The sum of [`super::shadows::light_bit`] over the lights that shine on what was hit.
     pub lit: L,
-    /// How many pixels away the next thing is that may slip between samples; infinity for none.
+    /// How many pixels away the nearest thing is that may slip between samples; infinity for none.
     pub near: L,
-    /// Which shadows what was hit is in that end near it, see [`super::shadows`].
+    /// The shadows that the hit is in and that end near it, see [`super::shadows`].
     pub shadows: L,
-    /// The same for what is seen in its mirror.
+    /// The same for what is seen in the mirror that was hit.
     pub mirrored_shadows: L,
 }
 
 impl<L: SimdFloat> Packet<L> {
-    /// Rays that have met nothing yet.
+    /// Creates a packet of rays that have hit nothing yet.
     #[inline(always)]
     pub fn new<const TREE: bool>(kernel: Kernel<L, TREE>, rays: Ray<L>, active: L::Mask) -> Self {
         Self {
@@ -63,7 +63,7 @@ impl<L: SimdFloat> Packet<L> {
 }
 
 impl<L: SimdFloat> EdgeInfo<L> {
-    /// What is known of rays that have met nothing yet.
+    /// Creates the information of rays that have hit nothing yet.
     #[inline(always)]
     pub fn new(cone: RayCone<L>) -> Self {
         Self {
@@ -76,8 +76,8 @@ impl<L: SimdFloat> EdgeInfo<L> {
     }
 }
 
-/// Lists which of so many samples are in doubt, given which of them each ray is, if they are in another order; none
-/// where nothing is noted.
+/// Lists which of the first `count` samples are in doubt. `order` gives the sample of each ray, and is empty if the
+/// rays are in the order of the samples. The list is empty if no doubts are noted.
 pub fn list_doubtful<L: SimdFloat>(
     (packets, uncertainties): (&[Packet<L>], &[Uncertainty<L>]),
     order: &[u32],

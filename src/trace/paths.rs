@@ -1,15 +1,15 @@
-//! Rays that have just started, and what they start on.
+//! Rays together with the primitives that they start on.
 
 use crate::primitive::{Primitive, Ray};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// Rays and the primitives that they start on, which they must not meet where they start.
+/// Rays and the primitives that they start on, which they must not hit at their origins.
 #[derive(Clone, Copy, Debug)]
 pub struct Paths<L> {
     /// The rays.
     pub rays: Ray<L>,
-    /// What they start on.
+    /// The primitives that they start on.
     pub ignored: IgnoredPrimitive<L>,
 }
 
@@ -18,30 +18,31 @@ pub struct Paths<L> {
 pub struct IgnoredPrimitive<L> {
     /// The number in each lane; [`NOTHING`] for none.
     numbers: L,
-    /// The one number in a list that all of them may be, [`UNLISTED`] if none is; `None` where they differ.
+    /// The number of the listed primitive that all of them may start on, [`UNLISTED`] if none starts on one; `None`
+    /// where they differ.
     listed: Option<usize>,
 }
 
-/// A number that no list has.
+/// A number that no listed primitive has.
 const UNLISTED: usize = usize::MAX;
 
-/// The number of no primitive.
+/// The number that stands for no primitive.
 pub const NOTHING: f64 = -1.0;
 
-/// A number of a primitive as the kernels count.
+/// Converts the number of a primitive to the kernels' real type.
 #[inline(always)]
 pub fn real<R: Real>(number: usize) -> R {
     R::from_f64(number as f64)
 }
 
 impl<L: SimdFloat> IgnoredPrimitive<L> {
-    /// None.
+    /// No primitive for any ray.
     #[inline(always)]
     pub fn nothing(token: L::Token) -> Self {
         Self::in_tree(L::splat(token, L::Real::from_f64(NOTHING)))
     }
 
-    /// All rays that count start on the primitive of this number, which is that in their lanes.
+    /// The same listed primitive for all rays that count: `numbers` has its number in their lanes.
     #[inline(always)]
     pub fn listed(number: usize, numbers: L) -> Self {
         Self {
@@ -50,14 +51,14 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
         }
     }
 
-    /// Each ray starts on the primitive whose number is in its lane, and which stands in a tree.
+    /// For each ray the primitive in a tree whose number is in its lane.
     #[inline(always)]
     pub fn in_tree(numbers: L) -> Self {
         Self::listed(UNLISTED, numbers)
     }
 
-    /// This, or none. Field by field: the whole of it would be copied with what is between its fields, for which
-    /// the processor waits.
+    /// Returns `self` if `is_so`, else no primitive. Field by field: as a whole it would be copied with the padding
+    /// between its fields, and the processor would stall on that.
     #[inline(always)]
     pub fn only_if(self, is_so: bool) -> Self {
         let none = Self::nothing(self.numbers.token());
@@ -67,7 +68,7 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
         }
     }
 
-    /// This where the mask is set, `other` elsewhere.
+    /// Returns `self` where the mask is set, `other` elsewhere.
     #[inline(always)]
     pub fn over(self, mask: L::Mask, other: Self) -> Self {
         Self {
@@ -76,13 +77,13 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
         }
     }
 
-    /// Where it is the primitive of this number.
+    /// Returns where the rays start on the primitive with this number.
     #[inline(always)]
     pub fn is(self, number: usize) -> L::Mask {
         self.numbers.same(self.numbers.like(real(number)))
     }
 
-    /// The number in a list that all of them are, if they are one.
+    /// Returns the number of the listed primitive that all rays start on, if they share one.
     #[inline(always)]
     pub fn shared(self) -> Option<usize> {
         self.listed.filter(|&number| number != UNLISTED)
@@ -90,9 +91,9 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
 }
 
 impl<L: SimdFloat> Paths<L> {
-    /// How far the primitive of this number is; infinity for none, and where the rays start on it. Other
-    /// than `LISTED`, it is written for all cases at once: what stands in a tree is tested in several places,
-    /// and the compiler has each of them to work on.
+    /// Returns the distance of the primitive with this number; infinity where rays miss it. Where they start on it,
+    /// it is the distance at which they hit it again. Without `LISTED`, the code is the same for all cases:
+    /// primitives in a tree are tested in several places, each of which the compiler has to process.
     #[inline(always)]
     pub fn distance<const LISTED: bool, P: Primitive<L::Real>>(
         &self,

@@ -1,20 +1,21 @@
-//! The points of a tile that have a sample: numbered in the order in which they are asked for.
+//! The points of a tile that have a sample, numbered in the order in which they are requested.
 
-/// Slots for so many points at least.
+/// Least number of slots.
 const LEAST_SLOTS: u32 = 1 << 9;
 
-/// Points of a grid and their numbers: a table with open addresses (Knuth, "The Art of Computer Programming", vol. 3,
-/// 6.4, algorithm L), which is small enough for the first cache where an array of the whole grid is not.
+/// Points of a grid and their numbers: a hash table with open addressing (Knuth, "The Art of Computer Programming",
+/// vol. 3, 6.4, algorithm L), which fits into the first-level cache where an array of the whole grid would not.
 #[derive(Debug)]
 pub struct PointTable {
-    /// Column and row.
+    /// Column and row of each point, in the order of their numbers.
     places: Vec<[u16; 2]>,
-    /// A point in the upper half, 1 + its number in the lower half; 0 where there is none. A power of two of them.
+    /// A point in the upper half, 1 + its number in the lower half; 0 for an empty slot. The length is a power of
+    /// two.
     slots: Vec<u64>,
 }
 
 impl PointTable {
-    /// None.
+    /// Creates an empty table.
     pub fn new() -> Self {
         Self {
             places: Vec::new(),
@@ -22,18 +23,18 @@ impl PointTable {
         }
     }
 
-    /// Forgets all.
+    /// Removes all points.
     pub fn clear(&mut self) {
         self.places.clear();
         self.slots.fill(0);
     }
 
-    /// Those with this number and later ones.
+    /// The points with this number and later ones.
     pub fn from(&self, number: usize) -> &[[u16; 2]] {
         &self.places[number..]
     }
 
-    /// The number of a point, which is the next one if it has none yet.
+    /// Returns the number of a point, which becomes the next one if it has none yet.
     #[inline(always)]
     pub fn number(&mut self, x: u16, y: u16) -> u32 {
         let key = u64::from(x) << 16 | u64::from(y);
@@ -50,14 +51,14 @@ impl PointTable {
         number
     }
 
-    /// The number of a point that has one.
+    /// Returns the number of a point, if it has one.
     #[inline(always)]
     pub fn find(&self, x: u16, y: u16) -> Option<u32> {
         let key = u64::from(x) << 16 | u64::from(y);
         (self.slots[self.slot(key)] as u32).checked_sub(1)
     }
 
-    /// Where a point is, or would be.
+    /// Returns the slot of a point, or the empty one for it.
     #[inline(always)]
     fn slot(&self, key: u64) -> usize {
         let last = self.slots.len() - 1;

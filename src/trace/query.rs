@@ -1,7 +1,7 @@
-//! What single rays see, in double precision and without a picture: for what is drawn over the picture
-//! and for the depth of what the picture shows.
+//! Queries by single rays, in double precision and without a picture: for what is drawn over the picture and for the
+//! depth of what it shows.
 //!
-//! The render thread asks, in pieces that can be stopped.
+//! The render thread runs them, in pieces that can be stopped.
 
 use glam::DVec3;
 use rayon::current_num_threads;
@@ -18,19 +18,20 @@ use crate::primitive::{Blur, Ray};
 use crate::scene::{Camera, Framing, List, Object, Scene, Take};
 use crate::simd::Vec3;
 
-/// The visible objects of a scene; markers of lights are not among them.
+/// The visible objects of a scene, without the markers of lights.
 #[derive(Clone, Debug)]
 pub struct SceneQuery {
     plan: Plan<f64>,
     all: Candidates,
 }
 
-/// A query that is kept: the next question may be about the same objects, seen from elsewhere.
+/// A query that is kept for reuse: the next one may be about the same objects, seen from elsewhere.
 #[derive(Clone, Debug, Default)]
 pub struct KeptQuery(Option<(List<Object>, SceneQuery)>);
 
 impl KeptQuery {
-    /// The query of a scene; what is ready in `planner` is not made ready again.
+    /// Returns the query of a scene. It is reused for the same objects, and meshes that are ready in `planner` are
+    /// not packed again.
     pub fn of(&mut self, scene: &Scene, planner: &Planner) -> &SceneQuery {
         let known = self.0.take();
         let known = known.filter(|(objects, _)| objects.is_same(&scene.objects));
@@ -40,13 +41,13 @@ impl KeptQuery {
 }
 
 impl SceneQuery {
-    /// What can be seen of a scene, which must pass [`crate::scene::check`].
+    /// Plans the visible objects of a scene, which must pass [`crate::scene::check`].
     pub fn new(scene: &Scene) -> Self {
         Self::of(scene, &Planner::default())
     }
 
     fn of(scene: &Scene, planner: &Planner) -> Self {
-        // Nothing is asked of lights.
+        // No query depends on lights.
         let unlit = Scene {
             lights: List::new(),
             ..scene.clone()
@@ -61,7 +62,7 @@ impl SceneQuery {
         }
     }
 
-    /// How far the first object is along a ray with a unit direction; infinity for the sky.
+    /// Returns the distance of the first object along a ray with a unit direction; infinity for the sky.
     pub fn distance(&self, origin: DVec3, direction: DVec3) -> f64 {
         let paths = Paths {
             rays: Ray {
@@ -85,7 +86,7 @@ impl SceneQuery {
         nearest.t
     }
 
-    /// Whether nothing stands between two points. What is at the second point itself does not.
+    /// Returns whether nothing stands between two points. What is at the second point itself does not count.
     pub fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
         let arm = to - from;
         match arm.try_normalize() {
@@ -98,9 +99,9 @@ impl SceneQuery {
 /// Rays along each side of the grid that [`survey`] casts.
 const SURVEYED: u32 = 5;
 
-/// Adds to `seen` what the other samples of a recorded flight see of the scene, at a grid of places in
-/// their pictures, so many times as wide as high: all of them, or at least one for each thread if `control`
-/// says stop. Whether it was all of them.
+/// Appends to `seen` what the remaining samples of a recorded flight see of the scene, at a grid of places in a
+/// picture that is `aspect` times as wide as high. If `control` is stopped, only some samples are added, at least
+/// one per thread. Returns whether all are done.
 pub fn survey(
     take: &Take,
     (query, aspect): (&SceneQuery, f64),
@@ -121,7 +122,7 @@ pub fn survey(
     seen.len() == take.samples.len()
 }
 
-/// For each point, whether nothing stands between it and the camera. `None` if `control` said stop.
+/// Returns for each point whether nothing stands between it and the camera; `None` if `control` is stopped.
 pub fn visible(
     query: &SceneQuery,
     camera: &Camera,
@@ -143,10 +144,10 @@ pub fn visible(
 }
 
 impl SceneQuery {
-    /// What is seen at a grid of places.
+    /// Returns what is seen at a grid of places in the picture.
     fn look(&self, framing: &Framing, aspect: f64) -> Vec<Landmark> {
         let last = f64::from(SURVEYED - 1);
-        // Rays that run side by side all see the same place of the sky.
+        // Parallel rays all see the same place of the sky.
         let is_parallel = framing
             .project_direction(framing.ray([0.0, 0.0]).1)
             .is_none();

@@ -1,5 +1,5 @@
-//! The cells of a tile whose insides are looked at. What becomes of them is decided one by one, not in lanes: it is
-//! compiled once for each precision, and not for every width of vectors.
+//! The cells of a tile whose insides are examined. They are handled one by one, not in lanes: the code is compiled
+//! once for each precision, not for every vector width.
 
 use super::borders::{Listener, PixelSides};
 use super::cell::Cell;
@@ -11,39 +11,40 @@ use super::thresholds::{FINEST, TELLING};
 use super::tile::{Tile, TileColors};
 use crate::simd::Real;
 
-/// Parts of a pixel that is divided twice.
+/// Number of parts of a pixel that is divided twice.
 const PARTS: u8 = 16;
-/// Of how many of them the corners see the same, at least, where the pixel is left alone.
+/// A pixel is crowded if all of its parts are to be divided, at least this many of them although their corners do
+/// not differ.
 const ALIKE: u8 = 4;
 
-/// The cells of a tile whose inside is not known. Where their corners say that one edge crosses them, [`CrossedCell`]
-/// takes a third of the samples of quarters, and where they show one thing whose colour changes evenly,
-/// [`Lattice::accumulate_even`] takes one.
+/// The cells of a tile whose inside is not known. If one edge crosses a cell according to its corners,
+/// [`CrossedCell`] takes a third of the samples that quarters would; if a cell shows one thing whose colour changes
+/// evenly, [`Lattice::accumulate_even`] takes one.
 #[derive(Debug)]
 pub struct Refinement<R> {
     lattice: Lattice<R>,
     cells: Vec<Cell>,
     split: Vec<Cell>,
     crossed: Vec<CrossedCell<R>>,
-    /// Cells that may be even, and the samples in their middles.
+    /// Cells whose colour may change evenly, and the samples in their middles.
     even: Vec<(Cell, u32)>,
-    /// What the pixels know of their sides.
+    /// Which sides of the pixels are known.
     borders: PixelSides,
-    /// Samples of which it was seen what they tell of the pixels beside them.
+    /// Number of samples that have been checked for what they tell the pixels beside them.
     received: usize,
-    /// Pixels that were told something and are not divided yet.
+    /// Pixels that have received a message and are not divided yet.
     to_divide: Vec<Cell>,
-    /// Row and column of all of them in the tile.
+    /// Row and column in the tile of all pixels that have received one.
     notified: Vec<[usize; 2]>,
-    /// How many of the sixteen parts of each pixel of the tile are divided, and of how many of these the corners see the
-    /// same, row by row, as far as some are.
+    /// For each pixel of the tile, row by row: how many of its sixteen parts are to be divided, and how many of
+    /// these have corners that do not differ. Ends with the last pixel that has such parts.
     busy: Vec<[u8; 2]>,
-    /// Row and column of the pixels that are left alone.
+    /// Row and column in the tile of the crowded pixels, which are divided no further.
     crowded: Vec<[usize; 2]>,
 }
 
 impl<R: Real> Refinement<R> {
-    /// No cells.
+    /// Creates a refinement without cells.
     pub fn new() -> Self {
         Self {
             lattice: Lattice::new(),
@@ -60,7 +61,7 @@ impl<R: Real> Refinement<R> {
         }
     }
 
-    /// Forgets the tile before.
+    /// Removes the cells of the previous tile.
     pub fn clear(&mut self) {
         self.split.clear();
         self.cells.clear();
@@ -71,24 +72,24 @@ impl<R: Real> Refinement<R> {
         self.crowded.clear();
     }
 
-    /// The pixels that are left alone because there is too much in them, by row and column in the tile.
+    /// The crowded pixels, which are divided no further, by row and column in the tile.
     pub fn crowded(&self) -> &[[usize; 2]] {
         &self.crowded
     }
 
-    /// The pixels that were told something since, by row and column in the tile.
+    /// The pixels that have received a message since the start, by row and column in the tile.
     pub fn notified(&self) -> &[[usize; 2]] {
         &self.notified
     }
 
-    /// Adds a pixel of a tile, and whether it may show a face of a mesh that no corner is on.
+    /// Adds a pixel of a tile, given whether it may show a face of a mesh that no corner is on.
     #[inline(always)]
     pub fn add(&mut self, column: usize, row: usize, may_hide_face: bool) {
         self.split.push(Cell::pixel(column, row, may_hide_face));
     }
 
-    /// Starts with the pixels that were added, whose colours become nothing, and with what was seen at the corners of
-    /// all. Whether there are any.
+    /// Starts with the pixels that were added, which become black, and with the results at the corners of all
+    /// pixels. Returns whether there are any.
     #[inline(never)]
     pub fn start(
         &mut self,
@@ -112,7 +113,7 @@ impl<R: Real> Refinement<R> {
         true
     }
 
-    /// Starts with pixels of a tile, by row and column in the picture, that were told something.
+    /// Starts with pixels that have received a message, by row and column in the picture.
     pub fn start_notified(
         &mut self,
         tile: &Tile,
@@ -132,7 +133,7 @@ impl<R: Real> Refinement<R> {
         self.divide_notified(tile, corners, colors);
     }
 
-    /// Divides the pixels that something thin is near; of the others, nothing thin is to be found at their quarters.
+    /// Divides the pixels that are near something thin; in the others, their quarters need not be searched for it.
     #[inline(never)]
     pub fn divide_near(&mut self) {
         let (lattice, cells) = (&mut self.lattice, &mut self.cells);
@@ -149,7 +150,7 @@ impl<R: Real> Refinement<R> {
         }
     }
 
-    /// Divides the cells that are to be divided.
+    /// Divides the cells that are put aside for it.
     #[inline(never)]
     pub fn divide(&mut self) {
         for cell in self.split.drain(..) {
@@ -158,7 +159,7 @@ impl<R: Real> Refinement<R> {
         }
     }
 
-    /// Wants the samples that decide what becomes of the cells. Whether there are any cells.
+    /// Requests the samples that decide about the cells. Returns whether there are any cells.
     #[inline(never)]
     pub fn want(&mut self) -> bool {
         for cell in &mut self.crossed {
@@ -170,23 +171,23 @@ impl<R: Real> Refinement<R> {
         !(self.cells.is_empty() && self.crossed.is_empty() && self.even.is_empty())
     }
 
-    /// `samples` become those that are wanted and not there yet.
+    /// Fills `samples` with those that were requested and have no result yet.
     #[inline(never)]
     pub fn wanted_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
         self.lattice.wanted_samples(tile, samples);
     }
 
-    /// Takes what was seen there.
+    /// Takes the results of these samples.
     #[inline(never)]
     pub fn take_results(&mut self, traced: &Traced<R>) {
         self.lattice.take_results(traced);
-        // Of the quarters of pixels alone.
+        // Faces are only noted while the cells are quarters of pixels.
         if !traced.faces.is_empty() {
             self.lattice.note_hidden_light(&mut self.cells);
         }
     }
 
-    /// Adds the colours of the cells that are known well enough, and notes what is to be done with the others.
+    /// Adds the colours of the cells that are known well enough, and decides what to do with the others.
     #[inline(never)]
     pub fn settle(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
         let (lattice, split) = (&self.lattice, &mut self.split);
@@ -216,8 +217,9 @@ impl<R: Real> Refinement<R> {
         self.divide();
     }
 
-    /// Leaves pixels alone of which all parts are to be divided, some of them for what is near alone: in smaller parts,
-    /// nobody looks for that. Which these are depends on nothing but what is seen in each of them.
+    /// Stops dividing the pixels of which all parts are to be divided, some of them only because something thin is
+    /// near: smaller parts are not searched for that. Which pixels these are depends only on what is seen in each of
+    /// them.
     fn leave_crowded(&mut self, limits: Limits<R>, stride: usize) {
         let before = self.crowded.len();
         for cell in &self.split {
@@ -248,8 +250,9 @@ impl<R: Real> Refinement<R> {
         self.even.retain(|(cell, _)| is_left(cell));
     }
 
-    /// Divides the pixels of which a sample on one of their sides tells that nothing that was taken for their colour has
-    /// seen all of what they show: a corner of something, say, ends in them. Whether there are any.
+    /// Divides the pixels for which a sample on one of their sides shows that the samples behind their colour have
+    /// not seen everything: the corner of something ends in them, say. Those of other tiles get a message. Returns
+    /// whether any pixel was divided.
     #[inline(never)]
     pub fn listen(
         &mut self,
@@ -283,7 +286,7 @@ impl<R: Real> Refinement<R> {
         !is_done
     }
 
-    /// Divides the pixels that were told something, twice: an end of something may be in one quarter alone.
+    /// Divides the pixels that have received a message, twice: the end of something may be in a single quarter.
     fn divide_notified(&mut self, tile: &Tile, corners: &Traced<R>, colors: &mut TileColors<R>) {
         self.lattice.add(tile, corners, &mut self.to_divide);
         for pixel in self.to_divide.drain(..) {
@@ -300,8 +303,8 @@ impl<R: Real> Refinement<R> {
         }
     }
 
-    /// Adds the colours of the cells that are known by their corners, and puts the others where they belong: those that
-    /// one edge crosses, those that may be even, and those to divide.
+    /// Adds the colours of the cells that are known by their corners, and sorts the others: those that one edge
+    /// crosses, those whose colour may change evenly, and those to divide.
     fn sort(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
         let lattice = &self.lattice;
         for mut cell in self.cells.drain(..) {

@@ -1,4 +1,4 @@
-//! Samples that are traced again, in double precision.
+//! Retracing of samples in double precision.
 
 use std::sync::atomic::AtomicBool;
 
@@ -10,18 +10,18 @@ use super::workspace_pool::WorkspacePool;
 use crate::plan::Plan;
 use crate::simd::{Level, SimdFloat, WithSimd};
 
-/// The same picture in double precision.
+/// The plan of the same picture in double precision.
 #[derive(Debug)]
 pub struct DoublePrecision {
     plan: Box<Plan<f64>>,
-    /// Everything that can be seen.
+    /// Everything that camera rays may hit first.
     seen: Candidates,
     level: Level,
     workspace_pool: WorkspacePool,
 }
 
 impl DoublePrecision {
-    /// What traces samples of a plan.
+    /// Creates a retracer from a plan.
     pub fn new(plan: Box<Plan<f64>>, level: Level) -> Self {
         Self {
             seen: Candidates::all_seen(&plan),
@@ -50,7 +50,7 @@ impl Retracer for DoublePrecision {
     }
 }
 
-/// Samples to be traced.
+/// Samples to trace.
 struct Retrace<'a> {
     exact: &'a DoublePrecision,
     samples: &'a mut Samples<f64>,

@@ -1,4 +1,4 @@
-//! Which places of a pixel are traced, and how their colours become the pixel's.
+//! Where pixels are sampled, and how the samples become the pixel's colour.
 
 use std::ops::Range;
 
@@ -14,38 +14,38 @@ use super::thresholds::NEAR;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
-/// Pixels with too much in them that are traced at once.
+/// Number of crowded pixels that are traced at once.
 const AT_ONCE: usize = 64;
 
-/// Steps of places in a pixel: single precision has them in all of a picture of 16,384 pixels, so that both precisions
-/// trace the same rays.
+/// Steps per pixel to which places are rounded: single precision can represent them anywhere in a picture of 16,384
+/// pixels, so that both precisions trace the same rays.
 const STEPS: f64 = 512.0;
 
-/// The nearest place in a pixel that both precisions have.
+/// Rounds a place in a pixel to one that both precisions can represent.
 fn whole_steps(place: f64) -> f64 {
     (place * STEPS).round() / STEPS
 }
 
-/// Samples the pixels of tiles; its buffers are used again.
+/// Samples the pixels of tiles; its buffers are reused.
 pub struct Sampler<L: SimdFloat> {
-    /// Whether packets look at squares, as they should where they see many small things.
+    /// Whether packets cover squares, as they should where they see many small things.
     in_squares: bool,
-    /// Places of the samples of a row, and of the rows.
+    /// Horizontal places of the samples in a row, and vertical places of the rows.
     columns: Vec<L::Real>,
     rows: Vec<L::Real>,
-    /// Which sample of the tile, counted row by row, each is, if they are in another order.
+    /// For each traced sample its index in the tile, counted row by row, if packets cover squares.
     order: Vec<u32>,
-    /// What was traced in that order.
+    /// The results in that order.
     unsorted: Traced<L::Real>,
     samples: Samples<L::Real>,
     traced: Traced<L::Real>,
-    /// What was traced at the corners of the pixels of a tile.
+    /// The results at the corners of the pixels of a tile.
     corners: Traced<L::Real>,
     refinement: Refinement<L::Real>,
 }
 
 impl<L: SimdFloat> Sampler<L> {
-    /// Nothing yet. Whether packets look at squares changes what a picture costs, and not what it shows.
+    /// Creates a sampler. Whether packets cover squares changes the cost of a picture, not its content.
     pub fn new(in_squares: bool) -> Self {
         Self {
             in_squares,
@@ -60,7 +60,8 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The colours at the centres of these pixels (column, row), in their order, and some more.
+    /// Traces the centres of these pixels (column, row) and returns the results in the same order, followed by
+    /// padding.
     #[inline(always)]
     pub fn centres<const TREE: bool>(
         &mut self,
@@ -78,8 +79,8 @@ impl<L: SimdFloat> Sampler<L> {
         &self.traced
     }
 
-    /// The colours of all pixels of a tile at (`x`, `y`) in each, from its upper left corner, row by
-    /// row, and some more.
+    /// Traces each pixel of a tile at (`x`, `y`) from its upper left corner and returns the results row by row,
+    /// followed by padding.
     #[inline(always)]
     pub fn all<const TREE: bool>(
         &mut self,
@@ -93,7 +94,7 @@ impl<L: SimdFloat> Sampler<L> {
         &self.traced
     }
 
-    /// Traces a sample at (`x`, `y`) in each pixel; what is seen is in their order, row by row.
+    /// Traces a sample at (`x`, `y`) in each pixel; the results are in `traced`, row by row.
     #[inline(always)]
     fn trace<const TREE: bool>(
         &mut self,
@@ -121,7 +122,8 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The means of `side × side` samples in each pixel, each in the middle of its part, see [`whole_steps`].
+    /// Sets `colors` to the means of `side × side` samples in each pixel, each in the middle of its part, see
+    /// [`whole_steps`].
     #[inline(always)]
     pub fn grid<const TREE: bool>(
         &mut self,
@@ -145,10 +147,11 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// The means of pixels that are subdivided as long as their corners differ; corners are shared.
+    /// Sets `colors` to the means of pixels, which are subdivided as long as their corners differ; neighbours share
+    /// corners.
     ///
-    /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here with
-    /// the things that were hit and lit, beside the colours, to tell the corners apart.
+    /// Whitted, "An improved illumination model for shaded display", CACM 23(6), 1980; here corners are told apart
+    /// by the things that were hit and lit as well as by their colours.
     #[inline(always)]
     pub fn adaptive<const TREE: bool>(
         &mut self,
@@ -164,9 +167,9 @@ impl<L: SimdFloat> Sampler<L> {
         if !self.refinement.start(tile, corners, limits, colors) {
             return;
         }
-        // What slips between samples is looked for once more, in the middle of pixels and of their sides; what is
-        // thinner than their quarters is met by some sample nearby, or shows too little. Where nothing thin is near the
-        // corners of a pixel, there is nothing in it either.
+        // Thin things are searched for once more, in the middles of pixels and of their sides. What is thinner than
+        // the quarters of pixels is hit by some sample nearby, or shows too little. If nothing thin is near the
+        // corners of a pixel, there is none in it either.
         self.refinement.divide_near();
         self.look(engine, seen, tile, EdgeDetail::Near);
         self.refinement.divide();
@@ -174,7 +177,8 @@ impl<L: SimdFloat> Sampler<L> {
         self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
-    /// The means of pixels that were told something, by row and column in the picture, and of those that they tell.
+    /// Sets the colours of the pixels that have received a message, by row and column in the picture, and of those
+    /// that get messages from them.
     pub fn notified_pixels<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
@@ -192,7 +196,7 @@ impl<L: SimdFloat> Sampler<L> {
         self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
-    /// The pixels of the last tile that were told something, by row and column in it.
+    /// The pixels of the last tile that have received a message, by row and column in it.
     pub fn notified(&self) -> &[[usize; 2]] {
         self.refinement.notified()
     }
@@ -216,7 +220,7 @@ impl<L: SimdFloat> Sampler<L> {
         std::mem::swap(&mut self.traced, &mut self.corners);
     }
 
-    /// Looks into what is not known until it is.
+    /// Examines cells until all are known.
     #[inline(always)]
     fn refine<const TREE: bool>(
         &mut self,
@@ -244,8 +248,8 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// Sets the pixels that have too much in them to the means of samples all over them: of a lattice by Fibonacci's
-    /// numbers (Zaremba, "Good lattice points, discrepancy, and numerical integration", Ann. Mat. Pura Appl. 73, 1966).
+    /// Sets crowded pixels to the means of samples all over them, on a Fibonacci lattice (Zaremba, "Good lattice
+    /// points, discrepancy, and numerical integration", Ann. Mat. Pura Appl. 73, 1966).
     #[inline(never)]
     fn fill_crowded<const TREE: bool>(
         &mut self,
@@ -284,7 +288,7 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// Traces what is wanted and not there yet.
+    /// Traces the samples that were requested and have no result yet.
     #[inline(always)]
     fn look<const TREE: bool>(
         &mut self,
@@ -301,9 +305,9 @@ impl<L: SimdFloat> Sampler<L> {
         }
     }
 
-    /// Sets every pixel to the mean of its corners, and notes those to subdivide. Most pictures are
-    /// smooth nearly everywhere, so this is what their smoothing costs: one loop over the whole tile,
-    /// with a pixel at the end of each row that is none.
+    /// Sets every pixel to the mean of its corners, and notes the pixels to subdivide. Most pictures are smooth
+    /// nearly everywhere, so this is most of the cost of smoothing: one loop over the whole tile, with one entry at
+    /// the end of each row that is not a pixel.
     #[inline(always)]
     fn judge(
         &mut self,
@@ -377,7 +381,7 @@ impl<L: SimdFloat> Sampler<L> {
     }
 }
 
-/// What was seen at the corners of cells, from one on: upper left and right, lower left and right.
+/// Returns the values at the corners of cells, from `first` on: upper left and right, lower left and right.
 #[inline(always)]
 fn corners_at<L: SimdFloat>(
     token: L::Token,
@@ -390,11 +394,12 @@ fn corners_at<L: SimdFloat>(
     [at(first), at(first + 1), at(below), at(below + 1)]
 }
 
-/// Which cells, of so many from one on, may show a face of a mesh, or light between two, that no corner has seen.
+/// Returns which of `count` cells, from `first` on, may show a face of a mesh, or light between two, that no corner
+/// has seen; bit by bit.
 fn hiding_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
     let above = &faces[first..=first + count];
     let below = &faces[first + stride..=first + stride + count];
-    // Most are on one face: in step.
+    // Most cells are on a single face: checked in step.
     let differing = |row: &[u64]| row.iter().fold(0, |all, face| all | (face ^ above[0]));
     if differing(above) | differing(below) == 0 {
         return 0;

@@ -1,39 +1,38 @@
-//! What goes into the tracing of a tile, and what comes out of it, one number per sample in each
-//! column.
+//! The input and the output of tracing a tile, in columns of one number per sample.
 
 use std::ops::Range;
 
 use crate::simd::{Real, Vec3};
 
-/// What a trace finds out about its samples.
+/// How much a trace finds out about its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EdgeDetail {
-    /// Colours alone.
+    /// Only colours.
     Ignored,
-    /// Also signatures, which tell edges.
+    /// Also signatures, which reveal edges.
     Signed,
-    /// Also the shadows and the faces that end near them: between two of those may be others.
+    /// Also the shadows that end near the samples, and the faces that they are on: between two of those may be
+    /// others.
     Bordered,
-    /// Also what is so thin that it may slip between samples.
+    /// Also things so thin that they may slip between samples.
     Near,
 }
 
-/// Places in the picture to be traced, in pixels from its left and upper edge; filled up to whole
-/// packets.
+/// Places in the picture to trace, in pixels from its left and upper edge; padded to whole packets.
 #[derive(Clone, Debug, Default)]
 pub struct Samples<R> {
     /// Columns.
     pub x: Vec<R>,
     /// Rows.
     pub y: Vec<R>,
-    /// How many are wanted.
+    /// The number of places without the padding.
     pub count: usize,
 }
 
-/// What was seen at each sample, and some more at the end.
+/// The results of samples, followed by padding.
 #[derive(Clone, Debug, Default)]
 pub struct Traced<R> {
-    /// How many samples there are.
+    /// The number of samples without the padding.
     pub count: usize,
     /// Linear red, 0–1.
     pub red: Vec<R>,
@@ -43,25 +42,26 @@ pub struct Traced<R> {
     pub blue: Vec<R>,
     /// Equal where the same things were hit and lit, directly and in mirrors. Only with edges.
     pub signature: Vec<u32>,
-    /// How many pixels away the next thing is that may slip between samples. Only with edges.
+    /// Distance in pixels of the nearest thing that may slip between samples. Only with edges.
     pub near: Vec<R>,
-    /// Which shadows it is in that end near it, see [`super::shadows`]. Only with edges.
+    /// The shadows that the sample is in and that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
-    /// Which flat face it is on, see [`super::faces`]; empty in scenes without. Only with [`EdgeDetail::Bordered`].
+    /// The mark of the flat face that the sample is on, see [`super::faces`]; empty in scenes without. Only from
+    /// [`EdgeDetail::Bordered`] on.
     pub faces: Vec<u64>,
 }
 
-/// The bits of signatures that tell things apart which are seen directly; the others also tell which lights shine on
-/// them and what is seen in mirrors.
+/// The bits of signatures that identify what is seen directly; the others also depend on which lights shine there
+/// and on what is seen in mirrors.
 pub const THING: u32 = 0xFFFF_0000;
 
-/// What is left of the light where others are marked.
+/// Factor that darkens the other samples where some are marked.
 const DARKENED: f64 = 0.25;
 
-/// Side of the squares that packets look at: sixteen rays, or two packets of eight.
+/// Side of the squares that packets cover: sixteen rays, or two packets of eight.
 const SQUARE: usize = 4;
 
-/// Puts numbers into the places that `order` has for them; none if there are none.
+/// Moves each number to the place that `order` has for it; `to` becomes empty if `from` is.
 #[inline(always)]
 fn sort<T: Copy + Default>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
     to.resize(from.len(), T::default());
@@ -71,7 +71,7 @@ fn sort<T: Copy + Default>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
 }
 
 impl<R: Real> Samples<R> {
-    /// Forgets all.
+    /// Removes all places.
     pub fn clear(&mut self) {
         self.x.clear();
         self.y.clear();
@@ -85,7 +85,7 @@ impl<R: Real> Samples<R> {
         self.y.push(y);
     }
 
-    /// Becomes all crossings of columns with rows, row by row.
+    /// Sets the places to all crossings of columns with rows, row by row.
     #[inline(always)]
     pub fn cross(&mut self, columns: &[R], rows: impl ExactSizeIterator<Item = R>) {
         let (width, height) = (columns.len(), rows.len());
@@ -100,8 +100,8 @@ impl<R: Real> Samples<R> {
         }
     }
 
-    /// The same, square by square: a packet then looks at what is close together. `order` becomes which
-    /// crossing, counted row by row, each sample is.
+    /// Does the same square by square, so that a packet covers places that are close together. `order` becomes the
+    /// index of each place, counted row by row.
     #[inline(always)]
     pub fn cross_in_squares(&mut self, columns: &[R], rows: &[R], order: &mut Vec<u32>) {
         self.clear();
@@ -124,12 +124,12 @@ impl<R: Real> Samples<R> {
                 add(left..left + SQUARE, top..top + SQUARE);
             }
         }
-        // What is left over comes last, so that the squares are whole packets.
+        // The rest comes last, so that the squares are whole packets.
         add(whole_columns..columns.len(), 0..whole_rows);
         add(0..columns.len(), whole_rows..rows.len());
     }
 
-    /// Counts the places, and fills the last packet up.
+    /// Sets `count`, and pads the last packet.
     #[inline(always)]
     pub fn pad(&mut self, lanes: usize) {
         self.count = self.x.len();
@@ -142,7 +142,7 @@ impl<R: Real> Samples<R> {
 }
 
 impl<R: Real> Traced<R> {
-    /// Becomes what `other` is, each sample in the place that `order` has for it.
+    /// Copies `other`, moving each sample to the place that `order` has for it.
     #[inline(always)]
     pub fn take_sorted(&mut self, other: &Self, order: &[u32]) {
         self.count = other.count;
@@ -165,7 +165,7 @@ impl<R: Real> Traced<R> {
         [&self.red, &self.green, &self.blue]
     }
 
-    /// What was seen at these samples becomes what was seen in double precision.
+    /// Replaces the results of the samples at `places` by those in double precision.
     pub fn replace(&mut self, places: &[u32], seen: &Traced<f64>, edges: EdgeDetail) {
         let columns = [
             (&mut self.red, &seen.red),
@@ -192,7 +192,7 @@ impl<R: Real> Traced<R> {
         }
     }
 
-    /// Makes these samples white, and all others darker.
+    /// Makes these samples white, and darkens all others.
     pub fn mark(&mut self, places: &[u32]) {
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             for number in column.iter_mut() {
@@ -204,7 +204,7 @@ impl<R: Real> Traced<R> {
         }
     }
 
-    /// Becomes so many views of nothing but this colour.
+    /// Sets all of `count` samples to a view of nothing but this colour; `length` includes the padding.
     pub fn fill(&mut self, count: usize, length: usize, edges: EdgeDetail, color: Vec3<R>) {
         self.resize(count, length, edges);
         self.red.fill(color.x);
@@ -215,7 +215,7 @@ impl<R: Real> Traced<R> {
         self.shadows.fill(0);
     }
 
-    /// Makes room for so many samples, `length` with those that fill the last packet up.
+    /// Makes room for `count` samples; `length` includes the padding of the last packet.
     pub fn resize(&mut self, count: usize, length: usize, edges: EdgeDetail) {
         self.count = count;
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
@@ -231,7 +231,7 @@ impl<R: Real> Traced<R> {
         self.shadows.resize(noted, 0);
     }
 
-    /// Makes room for packets that begin at any sample; what is seen there means nothing.
+    /// Makes room for packets that begin at any sample; the values there are meaningless.
     #[inline(always)]
     pub fn lengthen(&mut self, lanes: usize) {
         let length = self.red.len() + lanes;

@@ -1,4 +1,4 @@
-//! Tests of many primitives: those of a list one by one, those of a tree where its boxes are met.
+//! Tests of many primitives: all of those in a list, and those in a tree whose boxes are hit.
 
 use std::sync::Arc;
 
@@ -12,22 +12,22 @@ use crate::plan::{Child, CulledFaces, Geometry, PackedMesh, Plan};
 use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
 use crate::simd::{SimdFloat, Vec3};
 
-/// What is to be found out about each primitive.
+/// A test to run on many primitives.
 pub trait Test<L: SimdFloat> {
-    /// Whether thin things beside the rays count, and not what they meet.
+    /// Whether it looks for thin things beside the rays, and not for hits.
     const FINDS_THIN: bool = false;
 
-    /// How far each ray still looks; not above 0 where it does not.
+    /// Returns how far each ray still looks; not above 0 where it does not.
     fn reach(&self) -> L;
 
-    /// Whether nothing more can be found out.
+    /// Returns whether nothing more can be found out.
     fn is_done(&self) -> bool {
         false
     }
 
-    /// Tests a mesh that is no larger than a few pixels as the ball around it, for the rays that see it so
-    /// small: where a pixel is no wider than `widest`. Where any other ray is, if there is one: its faces are tested there
-    /// and nowhere else.
+    /// Tests a mesh as the ball around it, for the rays that see it no larger than a few pixels; a pixel is at most
+    /// `widest` wide there. Returns the other active rays, for which its faces are tested; `None` if there are none,
+    /// or the faces are not to be tested.
     fn test_ball(
         &mut self,
         _mesh: &PackedMesh<L::Real>,
@@ -38,10 +38,10 @@ pub trait Test<L: SimdFloat> {
         Some(active)
     }
 
-    /// What is tested from now on is no face of that mesh.
+    /// Ends the tests of the faces of that mesh.
     fn leave_mesh(&mut self) {}
 
-    /// Tests what is in a box for the rays that see it as one thing, see [`TreeVisitor::settle`].
+    /// Tests the contents of a box for the rays that see it as one thing, see [`TreeVisitor::settle`].
     fn settle(
         &mut self,
         _ball: (Vec3<L::Real>, L::Real),
@@ -52,7 +52,7 @@ pub trait Test<L: SimdFloat> {
         0
     }
 
-    /// What is tested from now on counts for all rays but these, bit by bit; those that counted no more before.
+    /// Excludes these rays, bit by bit, from the tests that follow. Returns the rays that were excluded before.
     fn leave_out(&mut self, _settled: u64) -> u64 {
         0
     }
@@ -67,7 +67,7 @@ pub trait Test<L: SimdFloat> {
     );
 }
 
-/// Tests what is in the lists.
+/// Runs a test on the primitives in the lists.
 #[inline(always)]
 pub fn scan_lists<L: SimdFloat>(
     plan: &Plan<L::Real>,
@@ -106,30 +106,31 @@ impl<L: SimdFloat, T: Test<L>> Visit<L::Real> for ListScan<'_, L, T> {
     }
 }
 
-/// What stands in a tree, and how it is looked at.
+/// The contents of a tree, and how they are scanned.
 pub struct TreeScan<'a, L: SimdFloat> {
-    /// What stands there.
+    /// What is in the tree.
     pub geometry: &'a Geometry<L::Real>,
     /// The number of its first primitive.
     pub first: usize,
-    /// Where to start; at the roots of the trees, to look beside the rays.
+    /// Where to start; scans beside the rays start at the roots of the trees.
     pub entry_points: &'a EntryPoints,
     /// For each mesh, the faces that are not tested, if there are any.
     pub culled_faces: &'a [Option<Arc<CulledFaces>>],
-    /// The point that boxes are held against the ways from, see [`Bundle::from_point`].
+    /// If given, boxes are tested along the ways from this point to the origins of the rays, see
+    /// [`Bundle::from_point`].
     pub back_from: Option<Vec3<L::Real>>,
     /// Where there is a ray.
     pub active: L::Mask,
-    /// How far the rays may be beside their place.
+    /// How far the rays may be off because of rounding.
     pub blur: Blur<L>,
-    /// How far beside the rays thin things are looked for, by a test that does.
+    /// How far beside the rays tests for thin things look.
     pub margin: ThinMargin<L::Real>,
-    /// Whether boxes are looked at; otherwise everything is tested.
+    /// Whether boxes are tested; otherwise all primitives are.
     pub is_boxed: bool,
 }
 
 impl<L: SimdFloat> TreeScan<'_, L> {
-    /// Tests what the boxes of the tree hold that the rays meet.
+    /// Tests what is in the boxes of the tree that the rays hit.
     #[inline(always)]
     pub fn scan<T: Test<L>>(&self, paths: &Paths<L>, stack: &mut Stack<L::Real>, test: &mut T) {
         let bvh = &self.geometry.bvh;
@@ -149,7 +150,8 @@ impl<L: SimdFloat> TreeScan<'_, L> {
             test,
         };
         if T::FINDS_THIN {
-            // Of a mesh as a whole, the ball around it says how wide a pixel is, which may be passed long before the box.
+            // For a mesh as a whole, the width of a pixel is that at the ball around it, which rays may pass long
+            // before the box.
             let margin = if self.geometry.meshes.is_empty() {
                 self.margin
             } else {
@@ -162,7 +164,7 @@ impl<L: SimdFloat> TreeScan<'_, L> {
     }
 }
 
-/// The members of the tree over all objects: primitives, then meshes.
+/// Visits the members of the tree of all objects: primitives, then meshes.
 struct ObjectVisitor<'a, L: SimdFloat, T> {
     tree_scan: &'a TreeScan<'a, L>,
     bundle: &'a Bundle<L>,
@@ -206,7 +208,7 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
 }
 
 impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
-    /// Looks into a mesh, from its own middle.
+    /// Scans a mesh, with rays relative to its middle.
     #[inline(always)]
     fn meet_mesh(&mut self, (mesh, width): (usize, L::Real), stack: &mut Stack<L::Real>) {
         let TreeScan {
@@ -252,10 +254,10 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
     }
 }
 
-/// The members of the tree of a mesh.
+/// Visits the members of the tree of a mesh.
 struct FaceVisitor<'a, L: SimdFloat, T> {
     mesh: &'a PackedMesh<L::Real>,
-    /// What is left out.
+    /// The faces that are left out.
     culled_faces: Option<&'a CulledFaces>,
     first: usize,
     active: L::Mask,
@@ -312,7 +314,7 @@ impl<L: SimdFloat, T: Test<L>> WithPrepared<L> for Tested<'_, L, T> {
     #[inline(always)]
     fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>) {
         if P::IS_ENDLESS {
-            return; // Stands in no tree.
+            return; // Endless primitives are in no tree.
         }
         self.test.test(primitive, prepared, self.paths, self.number);
     }

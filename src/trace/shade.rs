@@ -23,36 +23,36 @@ use crate::plan::{PointLight, Show};
 use crate::primitive::Blur;
 use crate::simd::{Mask as _, SimdFloat, Vec3};
 
-/// How packets are shaded.
+/// Shades packets.
 pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
-    /// Vector token and plan.
+    /// SIMD token and plan.
     pub kernel: Kernel<'a, L, TREE>,
     /// Whether the rays come from the camera.
     pub is_first: bool,
-    /// Whether mirrors send rays on.
+    /// Whether mirrors reflect rays.
     pub may_mirror: bool,
-    /// Whether what may slip between samples is looked for.
+    /// Whether to look for things that may slip between samples.
     pub looks_for_thin: bool,
-    /// What rays can meet, or just miss, that may slip between samples.
+    /// Things that rays may hit or narrowly miss, and that may slip between samples.
     pub thin: &'a Candidates,
-    /// What can stand before each light.
+    /// For each light, what may block it.
     pub lights: &'a [LightCandidates],
-    /// The same, if one may shine between the shadows of two of them, and somebody looks for that.
+    /// The same, if there may be gaps between two shadows, and these are looked for.
     pub gaps: Option<&'a [LightCandidates]>,
 }
 
-/// What is noted of a packet, where it is.
+/// What is noted of a packet, if it is wanted: its edges and its uncertainty.
 pub type Notes<'a, L> = (Option<&'a mut EdgeInfo<L>>, Option<&'a mut Uncertainty<L>>);
 
 /// The hits of one packet on one primitive, or on several of a kind.
 struct ShadingPoint<'a, L: SimdFloat> {
     hit: Hit<L>,
     material: HitMaterial<'a, L>,
-    /// Where the rays were going.
+    /// The directions of the rays.
     view: Vec3<L>,
-    /// How large a pixel is here, where edges are noted.
+    /// How large a pixel is at the hits, if edges are noted.
     footprint: Option<Footprint<L>>,
-    /// How far the hits may be off, where doubts are noted.
+    /// How far the hits may be off, if doubts are noted.
     slant: Option<Slant<L>>,
 }
 
@@ -64,14 +64,14 @@ struct LightSource<'a, R> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
-    /// Whether rays look beside themselves for one of these.
+    /// Returns whether rays look beside themselves for one of these thin things.
     #[inline(always)]
     fn looks_for(&self, thin: &Candidates) -> bool {
         self.looks_for_thin && !thin.is_empty()
     }
 
-    /// Colours what the packet has met, and notes its edges if they are wanted. Gives the rays that
-    /// mirrors send on.
+    /// Colours what the packet has hit, and notes its edges if they are wanted. Returns the rays that mirrors
+    /// reflect.
     #[inline(always)]
     pub fn shade(
         &self,
@@ -83,7 +83,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let kernel = self.kernel;
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
-        // What is in doubt is traced again: nothing more need be known of it.
+        // What is in doubt is traced again: nothing more is needed of it.
         let told = match &uncertainty {
             Some(own) => packet.active & !own.doubt,
             None => packet.active,
@@ -105,7 +105,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             edge.near = kernel.thin_distance(self.thin, &query, stack);
         }
 
-        // Each primitive that was hit, for all rays that have hit it or others of its kind.
+        // One turn for each primitive that was hit, for all rays that have hit it or others of its kind.
         let nothing = kernel.splat(NOTHING);
         let mut left = (nothing.less(packet.near.number) & told).bits();
         while left != 0 {
@@ -173,7 +173,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         mirrored.filter(|mirrored| mirrored.active.any())
     }
 
-    /// What is shown in place of the light that a surface gives off; `None` where that is shown.
+    /// Returns the colour to show instead of the light of a surface; `None` if that is shown.
     #[inline(always)]
     fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
@@ -198,7 +198,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// The hits, with the pixel's footprint; both sides are lit: the normal is turned to the viewer.
+    /// Returns the hits with the footprint of a pixel. Both sides are lit: normals are turned to the viewer.
     #[inline(always)]
     fn shading_point<'a>(
         &self,
@@ -235,8 +235,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// What hits are made of, if light falls on some, which then alone are there; the packet gets the colours that
-    /// they have without light, or those in their place.
+    /// Returns the material of the hits, and keeps those that respond to light; `None` if none does. The packet gets
+    /// the colours that they have without light, or `instead` if given.
     #[inline(always)]
     fn material<'a>(
         &'a self,
@@ -257,7 +257,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         material.surface.as_ref().map(HitMaterial::One)
     }
 
-    /// Where there are mirrors, and what their images are multiplied by.
+    /// Returns where there are mirrors, and the factors that their images are multiplied by.
     #[inline(always)]
     fn mirrors(&self, point: &ShadingPoint<L>) -> Option<(L::Mask, Vec3<L>)> {
         match point.material {
@@ -269,7 +269,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// Notes what is known of the rays that mirrors will send on.
+    /// Notes the uncertainty of the rays that mirrors will reflect.
     #[inline(always)]
     fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
         if self.may_mirror
@@ -296,10 +296,10 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// Adds what one light sends: intensity · n·l and intensity · (n·h)^p, if nothing is between.
+    /// Adds the light of one source: intensity · n·l and intensity · (n·h)^p, if nothing blocks it.
     ///
-    /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977, with h
-    /// halfway between the directions to the light and to the viewer.
+    /// Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977, with h halfway between
+    /// the directions to the light and to the viewer.
     #[inline(always)]
     fn add_light(
         &self,
@@ -332,7 +332,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             lit_side
         };
         if let Some(slant) = &point.slant {
-            // Also where nothing was found that may be in the way: what is found depends on the rays beside these.
+            // Also if nothing was found that may block it: what is found depends on the neighbouring rays.
             let mut doubt = facing & slant.is_lost;
             if !light.may_touch {
                 let shiny = point.material.shiny(hit.here);
@@ -345,7 +345,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             return;
         }
 
-        // Shadows: whatever stands before the light, and whatever thin thing nearly does.
+        // Shadows: what blocks the light, and thin things that narrowly miss the way to it.
         rays.shadow += u64::from(facing.bits().count_ones());
         let mut edge = edge.zip(point.footprint.as_ref());
         let mut lit = lit_side;
@@ -363,9 +363,9 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let ways = (&paths, (reach, shrink), facing, thick);
             let blocked = self.shadow(point, source, ways, (arriving, stack));
             if let Some((edge, footprint)) = beside {
-                // What is in the shadow of something wide is not seen to be in that of something thin as well.
+                // Within the shadow of something wide, that of something thin is not visible.
                 let open = facing & !blocked.wide;
-                // The shadow of a light that nobody sees is not seen either.
+                // If the light itself is not visible there, its shadow is not either.
                 let brightness = point.material.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);
                 let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
@@ -417,7 +417,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         }
     }
 
-    /// What stands between hits and a light, see [`Kernel::blocked`]; notes where that is in doubt.
+    /// Finds what stands between hits and a light, see [`Kernel::blocked`], and notes where that is in doubt.
     #[inline(always)]
     fn shadow(
         &self,
@@ -437,7 +437,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             None => Blur::splat(kernel.token, Blur::NONE),
             Some(slant) => slant.onwards((reach, shrink)),
         };
-        // What a light is on does not stand before it.
+        // The surface that a light is on does not block it.
         let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
         let wanted = (reach, facing, thick);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);

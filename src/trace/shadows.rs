@@ -1,23 +1,24 @@
-//! Which shadows samples are in that end near them: between two of them a pixel may be lit whose corners are all dark,
-//! and between those of two lights there may be light of both or of neither.
+//! The shadows that samples are in and that end near them: between two of these a pixel may be lit although all its
+//! corners are dark, and between shadows of two lights there may be light of both or of neither.
 //!
-//! A sample notes for each light the caster that it is deepest behind, as a few bits; nothing if that hides all of a
-//! pixel, or if the light shines. Where all corners of a cell are behind one caster or behind what hides it all, so
-//! is its inside: casters with outlines of their own are convex.
+//! A sample notes for each light the mark of the caster behind which it is deepest, a few bits; 0 if that hides all
+//! of a pixel, or if the light shines. If all corners of a cell are behind one caster, or behind what hides all of
+//! the cell, so is its inside: casters with outlines of their own are convex.
 
-/// Lights that are told apart: the first of the scene.
+/// Number of lights whose shadows are told apart: the first ones of the scene.
 const LIGHTS: usize = 3;
-/// Lights that an edge tells apart: sums of so many powers of two are exact in any real type.
+/// Number of lights that have a bit of their own in the sums of edges: sums of so many powers of two are exact in
+/// any real type.
 const LIGHT_BITS: usize = 20;
-/// Bits that more lights share: few, so that the sum of three thousand lights is exact as well.
+/// Number of bits that further lights share: few, so that the sum of three thousand lights is exact as well.
 const SHARED: usize = 13;
-/// Bits that tell casters apart. Those of all lights together are exact in any real type.
+/// Bits of the mark of a caster. Those of all lights together are exact in any real type.
 const BITS: u32 = 5;
-/// Bits of what is seen directly; above them are those of what is seen in a mirror.
+/// Bits of what is seen directly; those of what is seen in a mirror are above them.
 const DIRECT: u32 = LIGHTS as u32 * BITS;
 
-/// What an edge adds for a light that shines. Those that shadows are noted of have a power of two of their own; no sum
-/// of the others reaches down to it.
+/// Returns what a light that shines adds to the sum of an edge. Each light whose shadows are noted has a power of
+/// two of its own, below those of all other lights, so that no sum of the others changes its bit.
 #[inline(always)]
 pub fn light_bit(light: usize) -> f64 {
     let place = if light < LIGHT_BITS {
@@ -28,40 +29,40 @@ pub fn light_bit(light: usize) -> f64 {
     f64::from(1_u32 << place)
 }
 
-/// Apart: few scenes have so many lights, and the others are quicker without.
+/// Out of line: few scenes have so many lights, and the others are faster without it.
 #[cold]
 fn shared_bit(light: usize) -> usize {
     LIGHTS + (light - LIGHT_BITS) % SHARED
 }
 
-/// What tells a caster from others, by its number: from 1 on.
+/// Returns the mark that tells a caster from others, by its number: from 1 on.
 #[inline(always)]
 pub fn mark_of(number: usize) -> f64 {
     (number % ((1 << BITS) - 1) + 1) as f64
 }
 
-/// What the mark of a caster before a light is multiplied by; `None` for lights that are not told apart.
+/// Returns the factor of the marks of casters before a light; `None` if its shadows are not told apart.
 #[inline(always)]
 pub fn weight_of(light: usize) -> Option<f64> {
     (light < LIGHTS).then(|| f64::from(1_u32 << (light as u32 * BITS)))
 }
 
-/// The shadows of a sample: sums of weighted marks, of what is seen directly and of what is seen in its mirror.
+/// Combines the shadows of a sample, which are sums of weighted marks: of what is seen directly and in its mirror.
 #[inline(always)]
 pub fn joined(direct: u32, mirrored: u32) -> u32 {
     direct | mirrored << DIRECT
 }
 
-/// Whether some light may shine into a cell between the shadows at its corners: all of them end near there, and they
-/// are not all the same.
+/// Returns whether some light may shine into a cell between the shadows at its corners: all corners are in shadows
+/// that end near them, and these are not all the same.
 #[inline(always)]
 pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
     let differing = (a ^ b) | (a ^ c) | (a ^ d);
     noted(a) & noted(b) & noted(c) & noted(d) & noted(differing) != 0
 }
 
-/// Whether each of two lights shines at a corner where the shadow of the other ends nearby: between those there may be
-/// light of both or of neither, and if they are as bright, the corners look alike.
+/// Returns whether each of two lights shines at a corner where a shadow of the other ends nearby: between these
+/// there may be light of both or of neither, and if the lights are equally bright, the corners look alike.
 #[inline(always)]
 pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
     let [a, b, c, d] = [noted(a), noted(b), noted(c), noted(d)];
@@ -69,7 +70,7 @@ pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
     swapped(a, b) | swapped(a, c) | swapped(a, d) | swapped(b, c) | swapped(b, d) | swapped(c, d)
 }
 
-/// The highest bit of each mark that is not zero.
+/// Returns, for each mark that is not zero, the highest bit of its field; all other bits are 0.
 #[inline(always)]
 fn noted(shadows: u32) -> u32 {
     const HIGHEST: u32 = {
@@ -88,7 +89,7 @@ fn noted(shadows: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The shadows of a sample behind such casters of the first lights, none where there is none.
+    /// Returns the shadows of a sample behind these casters of the first lights; `None` stands for no caster.
     fn behind(direct: &[Option<usize>], mirrored: &[Option<usize>]) -> u32 {
         let sum = |casters: &[Option<usize>]| {
             let marks = casters.iter().enumerate();

@@ -1,10 +1,10 @@
-//! What is counted.
+//! Ray counters.
 
 use std::ops::{Add, AddAssign};
 
 use serde::Serialize;
 
-/// How many rays were traced, by what they were for.
+/// The numbers of rays that were traced, by their purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Rays {
     /// From the camera.
@@ -13,13 +13,13 @@ pub struct Rays {
     pub shadow: u64,
     /// From a mirror.
     pub reflected: u64,
-    /// From the camera, for the second time: in double precision, where rounding may have decided what was seen.
-    /// What these have sent on is not counted.
+    /// From the camera for the second time, in double precision, where rounding may have decided what was seen. Rays
+    /// that go on from these are not counted.
     pub again: u64,
 }
 
 impl Rays {
-    /// All of them.
+    /// The number of all rays.
     pub fn total(self) -> u64 {
         self.camera + self.shadow + self.reflected + self.again
     }

@@ -1,4 +1,4 @@
-//! How far pixels stretch on what they fall on at a grazing angle.
+//! How far pixels stretch on surfaces at a grazing angle.
 
 use super::intersect::Kernel;
 use super::paths::real;
@@ -8,7 +8,7 @@ use crate::primitive::Kind;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Where what has these numbers is an endless plane.
+    /// Returns which of the primitives with these numbers are endless planes.
     #[inline(always)]
     fn are_planes(self, numbers: L) -> L::Mask {
         let first = self.plan.primitives.firsts()[Kind::Plane as usize];
@@ -17,8 +17,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         first.at_most(numbers) & numbers.less(end)
     }
 
-    /// Where what has these numbers may be flat, and so large that pixels of this width stretch farther on it than on
-    /// anything: no plane, which they always do.
+    /// Returns which of the primitives with these numbers may be flat, and so large that pixels of this width
+    /// stretch farther on them than usual. Planes are not among them: pixels always do so on planes.
     #[inline(always)]
     fn may_be_large(self, numbers: L, width: L) -> L::Mask {
         let flats = self.plan.flats;
@@ -31,7 +31,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         width.less(largest * largest.like_f64(GRAZING)) & !self.are_planes(numbers)
     }
 
-    /// The normal of what has a number, if that is flat, and how far it goes at most; the normal of what is round is 0.
+    /// Returns the normal of the primitive with a number and how far it goes at most, if it is flat; the normal of a
+    /// round one is 0.
     #[inline(never)]
     fn flat_at(self, number: usize) -> Option<(Vec3<L::Real>, L::Real)> {
         match self.geometry() {
@@ -40,8 +41,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// Cosine below which what has these numbers, and is met at this cosine by pixels of this width, does not stretch
-    /// them any further: on what is flat, they stretch as far as that goes.
+    /// Returns the cosine below which the primitives with these numbers do not stretch pixels of this width any
+    /// further, given the cosine at which they are hit: flat ones stretch pixels over all of their extent.
     #[inline(always)]
     pub fn grazing(self, numbers: L, (cosine, width): (L, L)) -> L {
         let on_flats = self.splat(GRAZING_ON_FLATS);
@@ -59,8 +60,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         grazing
     }
 
-    /// The longest pixel of those of this width on what has these numbers and was hit there along these directions, at
-    /// most.
+    /// Returns an upper bound of the length of pixels of this width on the primitives with these numbers, where they
+    /// were hit along these directions.
     #[inline(always)]
     pub fn longest_on(self, numbers: L, (hit, directions, width): (L::Mask, Vec3<L>, L)) -> L {
         let usual = width * width.like_f64(1.0 / GRAZING);
@@ -81,7 +82,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// Cosine below which pixels of a width do not stretch any further on something flat that goes so far.
+/// Returns the cosine below which pixels of a width do not stretch any further on something flat that goes so far.
 #[inline(always)]
 fn least_cosine<L: SimdFloat>(width: L, extent: L::Real) -> L {
     let whole = width / width.like(extent);

@@ -1,4 +1,4 @@
-//! Where rays have met a primitive, refined, and the rays that start there.
+//! Refined hits of rays on primitives, and the rays that start there.
 
 use super::gather::{Gathered, HitPrimitive};
 use super::intersect::{Kernel, Nearest};
@@ -11,15 +11,15 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// Hits on one primitive, or on several of a kind.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<L: SimdFloat> {
-    /// Where they are.
+    /// Which rays these are the hits of.
     pub here: L::Mask,
     /// Point, normal and curvature of the surface.
     pub surface: SurfacePoint<L>,
-    /// Index into [`crate::plan::Plan::materials`] of what the first of them is made of.
+    /// Index into [`crate::plan::Plan::materials`] of the material of the first hit.
     pub material: u32,
-    /// Whether others are made of something else.
+    /// Whether other hits have another material.
     pub is_mixed: bool,
-    /// What was hit.
+    /// The primitives that were hit.
     own: IgnoredPrimitive<L>,
 }
 
@@ -46,8 +46,8 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// The hits on what the first of the rays in `left` (bit by bit) has met, which has met something; `mixed`
-    /// become the materials there, if it is not one.
+    /// Returns the hits on the primitive that the first of the rays in `left` (bit by bit) has hit, or on all that
+    /// are like it; that ray must have hit something. If there may be several materials, `mixed` becomes these.
     #[inline(always)]
     pub fn refine(
         self,
@@ -77,7 +77,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// The hits on everything that is like one primitive: each ray has met its own, and they are lit as one.
+    /// Returns the hits on all primitives that are like one: each ray has hit its own, and they are lit together.
     #[inline(never)]
     fn refine_alike(
         self,
@@ -123,7 +123,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// The paths that start at the hits in unit directions on the side that the normal points to.
+    /// Returns the paths that start at the hits in unit directions, on the side that the normal points to.
     #[inline(always)]
     pub fn spawn(self, hit: &Hit<L>, direction: Vec3<L>) -> Paths<L> {
         let SurfacePoint {
@@ -147,9 +147,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         Paths { rays, ignored }
     }
 
-    /// How large the cosine between the normals of surfaces and the unit direction to a light must be for them to be lit,
-    /// where the light may be level with them, or on a ball: infinity where that ball stands before it. The light is at
-    /// this distance; `shrink` is one over that.
+    /// Returns how large the cosine between the normal of a surface and the unit direction to a light must be for
+    /// the surface to be lit, if the light may be level with it or on a ball: infinity where that ball blocks the
+    /// light. The light is at this distance; `shrink` is one over that.
     #[inline(always)]
     pub fn lowest_lit(
         self,
@@ -165,8 +165,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         L::select(is_hidden, self.infinity(), part + shrink * rounding)
     }
 
-    /// The paths from the hits to a light, which is at a distance in a unit direction from there, and how far from their
-    /// start something stands before it.
+    /// Returns the paths from the hits to a light, which is at a distance in a unit direction from there, and the
+    /// distance from their start up to which an occluder counts.
     #[inline(always)]
     pub fn towards(
         self,
@@ -178,22 +178,23 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let mut distance = distance;
         let is_at_hit = matches!(self.plan.ray_origin, RayOrigin::AtHit);
         if is_at_hit && self.plan.clearance > L::Real::ZERO {
-            // Parallel to the way from the hit, they would meet what is a little behind the light before they are there.
+            // Parallel to the way from the hit, they might hit something a little behind the light within its
+            // distance.
             let to_light = paths.rays.origin.like(light.position) - paths.rays.origin;
             distance = to_light.length();
             let way = to_light * (self.splat(1.0) / distance);
-            // From where the light is, no direction leads to it.
+            // From the place of the light itself, no direction leads to it.
             let is_apart = self.splat(0.0).less(distance);
             paths.rays.direction = Vec3::select(is_apart, way, direction);
         }
         (paths, self.reach_to(light, distance))
     }
 
-    /// How far from the start of such paths something stands before a light that is at a distance from there.
+    /// Returns the distance from the start of such paths up to which an occluder counts, given that of the light.
     #[inline(always)]
     fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {
         match self.plan.ray_origin {
-            // What the light is on, within rounding, does not stand before it.
+            // What the light is on, within rounding, does not block it.
             RayOrigin::AtHit if light.may_touch => {
                 let part = distance.like(roundings());
                 distance - distance * part - distance.like(light.rounding)
@@ -204,10 +205,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// 256 roundings of each coordinate in the direction of the normal, and 1/65536 of a unit near zero.
+/// Returns an offset along the normal: 256 roundings of each coordinate, and 1/65536 of a unit near zero.
 ///
-/// Wächter and Binder, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems
-/// (2019), ch. 6; with 2u·|p| in place of the step to the next number, which is at most twice that.
+/// Wächter and Binder, "A fast and robust method for avoiding self-intersection", Ray Tracing Gems (2019), ch. 6;
+/// with 2u·|p|, which is at most twice as much, in place of the step to the next number.
 #[inline(always)]
 fn roundings_along<L: SimdFloat>(point: Vec3<L>, normal: Vec3<L>) -> Vec3<L> {
     let like = point.x;

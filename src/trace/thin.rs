@@ -1,6 +1,6 @@
-//! What may slip between the samples of a pixel: primitives, and their shadows and mirror images,
-//! that are narrower than two pixels. A sample that passes such a thing closely says so, and is then
-//! not left alone.
+//! Things that may slip between the samples of a pixel: primitives that are narrower than two pixels, their shadows
+//! and their mirror images. A sample that passes such a thing closely notes that, and its surroundings are then
+//! examined.
 
 use super::candidates::{Candidates, Targets};
 use super::entry_points::EntryPoints;
@@ -18,31 +18,32 @@ use crate::plan::PackedMesh;
 use crate::primitive::{Approach, Blur, Primitive};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// Rays that look beside themselves.
+/// Rays that search for thin things beside them.
 #[derive(Clone, Copy, Debug)]
 pub struct ThinQuery<'a, L: SimdFloat> {
     /// The rays.
     pub paths: &'a Paths<L>,
     /// Where there is a ray.
     pub active: L::Mask,
-    /// How wide a pixel is along them.
+    /// The width of a pixel along them.
     pub cone: RayCone<L>,
-    /// The same around what is looked at as one thing in meshes, which does not narrow towards a light: ever more would
+    /// The same around what is treated as one thing in meshes. It does not narrow towards a light: ever more would
     /// have to be told apart, for ever less of a shadow.
     pub in_meshes: RayCone<L>,
-    /// How much it widens along rays that are mirrored there: those for which that is more than [`LARGEST_SPREAD`] do not
-    /// look into meshes, and those for which it is more than [`WIDEST_TO_LIGHTS`] at nothing on the way to a light; in
-    /// crowded scenes, these do not from [`LARGEST_SPREAD`] on, and from [`WIDEST_SPREAD`] on at nothing at all.
+    /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
+    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`LARGEST_SPREAD`]
+    /// do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look for nothing. In crowded
+    /// scenes, rays to a light look for nothing above [`LARGEST_SPREAD`], and other rays above [`WIDEST_SPREAD`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
-    /// Whether they go to a light: then it is who looks.
+    /// Whether they go to a light: the far sides of solids are then those that the light does not see.
     pub is_to_light: bool,
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// How many pixels away from the rays the nearest of the primitives is that are narrower there
-    /// than [`SLIPPING`] pixels; infinity for none.
+    /// Returns how many pixels away from the rays the nearest primitive is that is narrower there than [`SLIPPING`]
+    /// pixels; infinity for none.
     #[inline(always)]
     pub fn thin_distance(
         self,
@@ -67,7 +68,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let mut test = ThinTest::new(query, true, self.infinity());
         scan_lists(self.plan, targets, query.paths, &mut test);
         let mut best = test.best;
-        // Their starts leave out what is beside the rays.
+        // Entry points that were computed for the rays would leave out what is beside them.
         let entry_points = EntryPoints::default();
         let targets = Targets {
             candidates: targets,
@@ -76,7 +77,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             culled_faces: &[],
         };
         let exact = Blur::splat(self.token, Blur::NONE);
-        // Apart from each other: boxes are as wide as the widest pixel.
+        // Separately, since boxes are widened by the widest pixel of all rays.
         for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
             let looking = query.active & looking;
             if looking.any()
@@ -88,7 +89,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         L::select(query.active, best, self.infinity())
     }
 
-    /// The nearest of `best` and what stands in the tree, in meshes as well if that is entered.
+    /// Returns `best` or, if that is nearer, the distance in pixels of the nearest thin thing in the tree; in meshes
+    /// as well if they are entered.
     #[inline(never)]
     fn thin_in(
         self,
@@ -112,7 +114,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 };
                 let tree_scan = TreeScan {
                     margin,
-                    // What is narrow is found in the same way with and without boxes.
+                    // The search for thin things is the same whether the plan uses boxes or not.
                     is_boxed: true,
                     ..*tree_scan
                 };
@@ -128,33 +130,34 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 /// Looks for the thin thing that the rays pass most closely.
 struct ThinTest<'a, L: SimdFloat> {
     query: &'a ThinQuery<'a, L>,
-    /// How many pixels away it is.
+    /// How many pixels away the nearest one is.
     best: L,
     /// Whether the rays look into meshes, and not only at small ones as a whole.
     enters: bool,
-    /// For which rays what is tested counts, if it is of a mesh.
+    /// While a mesh is tested, the rays for which its parts count.
     counted: L::Mask,
-    /// How wide a pixel is around what is looked at as one thing.
+    /// The width of a pixel around what is treated as one thing.
     cone: RayCone<L>,
-    /// The rays that have seen a box around what is tested as one thing, bit by bit, and for which it counts.
+    /// The rays that have treated a box around the tested primitive as one thing, bit by bit, and those for which
+    /// the primitive still counts.
     settled: u64,
     open: L::Mask,
 }
 
 /// How rays pass a ball.
 struct BallApproach<L> {
-    /// Where along the rays its middle is.
+    /// Distance along the rays at which they are closest to its middle.
     along: L,
-    /// How far from the rays that is.
+    /// Distance of the middle from the rays.
     off: L,
     /// Its radius.
     radius: L,
-    /// How wide a pixel is there.
+    /// Width of a pixel there.
     width: L,
 }
 
 impl<'a, L: SimdFloat> ThinTest<'a, L> {
-    /// Looks for what is nearer than `best`.
+    /// Creates a test for thin things that are fewer than `best` pixels away.
     #[inline(always)]
     fn new(query: &'a ThinQuery<'a, L>, enters: bool, best: L) -> Self {
         let all = query.active | !query.active;
@@ -182,7 +185,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         }
     }
 
-    /// Where a primitive counts that rays approach like this, and how wide a pixel is there.
+    /// Returns for which rays a primitive counts that they approach like this, and how wide a pixel is there.
     #[inline(always)]
     fn counts<P: Primitive<L::Real>>(&self, primitive: &P, approach: &Approach<L>) -> (L::Mask, L) {
         let ThinQuery { cone, reach, .. } = self.query;
@@ -194,11 +197,11 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         (thin & self.counted & self.open, width)
     }
 
-    /// Notes a ball that is so far beside the rays, where it counts.
+    /// Notes a ball that is `beside` away from the rays, where it counts.
     #[inline(always)]
     fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, beside: L) {
         let width = ball.width;
-        // Whether a ray meets what is inside, nobody asks: it passes closely enough.
+        // Whether a ray hits what is inside does not matter: it passes closely enough.
         let beside = beside.max(width * width.like_f64(CLOSE));
         let near = pixels(counts, beside, width);
         self.best = self.best.min(near);
@@ -227,14 +230,15 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         }
         let ball = self.passed(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
-        // The box reaches farther than the mesh: rays in its corners pass by.
+        // The box reaches farther than the mesh: rays through its corners pass the mesh.
         let beside = ball.off - ball.off.like(mesh.reach);
         let is_before = (ball.along - ball.radius).less(self.query.reach + ball.width);
         let is_ahead = ball
             .width
             .like(L::Real::ZERO)
             .less(ball.along + ball.radius);
-        // Those for which it is not so thin, or that do not come so close to the box, look into it only since others do.
+        // Rays for which the mesh is not thin enough, or which do not come close enough to its box, do not count:
+        // they are only here because of other rays of the packet.
         let thickness = ball.width.like(mesh.bvh.thinnest);
         let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
@@ -313,7 +317,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let approach = primitive.approach(
             &paths.rays,
             prepared,
-            // Farther away than a pixel, nobody asks how far.
+            // Beyond a pixel, the exact distance does not matter.
             #[inline(always)]
             |rough| {
                 let (counts, width) = self.counts(primitive, rough);

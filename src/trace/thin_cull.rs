@@ -1,5 +1,5 @@
-//! Whether something thin in the trees may slip between the samples of a tile at all: most tiles are spared to look for
-//! it ray by ray.
+//! Whether something thin in the trees may slip between the samples of a tile at all: most tiles are spared the
+//! search ray by ray.
 
 use super::bundle::Shaft;
 use super::thin_margin::ThinMargin;
@@ -8,18 +8,18 @@ use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
 
-/// Nodes that are looked at; where that is not enough, something thin may be there.
+/// Number of nodes that are examined; if that is not enough, something thin may be there.
 const MOST_NODES: u32 = 32;
 
-/// A mesh that is fewer pixels large than this may slip between samples as a whole: with so many faces in a pixel, they
-/// are too many to look at one by one.
+/// Returns the size in pixels below which a mesh may slip between samples as a whole: with that many faces per
+/// pixel, testing each is too slow.
 #[inline(always)]
 pub fn least_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
     let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED);
     faces.sqrt().max(R::from_f64(SMALL))
 }
 
-/// Whether rays of a shaft may come close to something thin in the trees, wherever along their way.
+/// Returns whether any ray of the shaft may pass close to something thin in the trees, at any distance.
 #[inline(never)]
 pub fn may_slip<L: SimdFloat>(
     token: L::Token,
@@ -62,8 +62,8 @@ pub fn may_slip<L: SimdFloat>(
     )
 }
 
-/// Whether the rays may come close to a thin member of a tree for which `is_so`, given how wide a pixel is there at
-/// most, and how many nodes are left to look at.
+/// Returns whether any ray may pass close to a thin member of a tree for which `is_so` holds. That gets the largest
+/// width of a pixel there, and the number of nodes that are left to examine.
 #[inline(always)]
 fn is_close<L: SimdFloat>(
     token: L::Token,
@@ -91,7 +91,7 @@ fn is_close<L: SimdFloat>(
                 Child::Member(member) if is_so(member, widths[index], left) => return true,
                 Child::Member(_) => {}
                 Child::Node(_) if count == stack.len() => return true,
-                // Looked at as one thing, it is not told from what is in it.
+                // Its contents are treated as one thing, and not told apart.
                 Child::Node(_) if is_one(node.bounds(index), widths[index]) => return true,
                 Child::Node(inner) => {
                     stack[count] = inner;
@@ -103,7 +103,7 @@ fn is_close<L: SimdFloat>(
     false
 }
 
-/// Whether what is in a box may be looked at as one thing where pixels are so wide.
+/// Returns whether the contents of a box may be treated as one thing where pixels are this wide.
 #[inline(always)]
 fn is_one<R: Real>(bounds: BoundingBox<R>, width: R) -> bool {
     let (_, radius) = bounds.ball();
@@ -147,7 +147,7 @@ mod tests {
         let plan: Plan<f64> = Plan::new(&scene, &request, &mut PlanCache::default());
         let geometry = plan.geometry.as_deref().expect("meshes");
         let is_close = |x: f64, width: f64| {
-            // Along all axes, so that all of them have something in common.
+            // Has a part along each axis, so that the rays have something in common along all of them.
             let way = DVec3::new(0.3, 0.3, -1.0);
             let start = DVec3::new(x, 0.0, 0.0) - way * 300.0 - plan.centre;
             let origins = BoundingBox::around(&[Vec3::from_dvec3(start)]).widened(4.0);
@@ -155,7 +155,7 @@ mod tests {
             let margin = ThinMargin::slipping(width, 0.0);
             may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &margin)
         };
-        // The cylinder is 0.2 thick: as wide as two pixels and a little more, or less.
+        // The cylinder is 0.2 thick: a little less than two of the wider pixels, and more than two of the others.
         for (x, is_thin) in [(0.0, false), (100.0, true), (200.0, false)] {
             assert_eq!(is_close(x, 0.11), is_thin, "at {x}");
             assert!(!is_close(x, 0.05), "at {x}");

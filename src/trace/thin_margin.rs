@@ -1,29 +1,29 @@
-//! How far beside rays boxes are looked into for what is thin.
+//! How far beside rays boxes are searched for thin things.
 
 use super::thresholds::SLIPPING;
 use crate::primitive::CAUTION;
 use crate::simd::{Real, SimdFloat};
 
-/// How many widths of a pixel before a box a ray passes what is in it, at most: discs the farthest.
+/// How far before a box, in widths of a pixel, a ray may pass what is in it: discs the farthest.
 const PASSED_BEFORE: f64 = 4.0;
 
-/// How wide a pixel is around the rays, at most: where they start, and how much more at distance 1.
+/// Upper bound of the width of a pixel around rays, and how thick the things are that are looked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ThinMargin<R> {
-    /// Scene units.
+    /// Width where the rays start, in scene units.
     pub width: R,
-    /// Scene units per scene unit.
+    /// Growth of the width at distance 1, in scene units per scene unit.
     pub spread: R,
-    /// How many times as wide as that things may be that are looked for.
+    /// Thickness in widths of a pixel below which things are looked for.
     pub thickest: R,
-    /// How much less at distance 1 at least, where pixels narrow along all of the rays.
+    /// How much narrower a pixel becomes at distance 1, at least, if it narrows along all of the rays; else 0.
     pub narrowing: R,
-    /// How wide they count at least all the same.
+    /// Least width in spite of narrowing, in scene units.
     pub least: R,
 }
 
 impl<R: Real> ThinMargin<R> {
-    /// What may slip between samples, where pixels are so wide.
+    /// Creates the margin for things that may slip between samples, where pixels are this wide.
     #[inline(always)]
     pub fn slipping(width: R, spread: R) -> Self {
         Self {
@@ -35,7 +35,7 @@ impl<R: Real> ThinMargin<R> {
         }
     }
 
-    /// The same where pixels do not narrow.
+    /// Returns the same margin for pixels that do not narrow.
     #[must_use]
     pub fn without_narrowing(self) -> Self {
         Self {
@@ -44,8 +44,8 @@ impl<R: Real> ThinMargin<R> {
         }
     }
 
-    /// How wide a pixel is around a box at most that is no nearer than this to where any ray starts, where it would be so
-    /// wide without narrowing. What is in it may be passed some widths before it.
+    /// Returns the largest width of a pixel around a box that is no nearer than `near` to the start of any ray,
+    /// given the width without narrowing. What is in the box may be passed some widths before it.
     #[inline(always)]
     pub fn narrowed<L: SimdFloat<Real = R>>(&self, width: L, near: L) -> L {
         let sure = near * near.like_f64(1.0 - CAUTION) - width * near.like_f64(PASSED_BEFORE);
@@ -53,7 +53,7 @@ impl<R: Real> ThinMargin<R> {
         narrowed.max(near.like(self.least))
     }
 
-    /// How far something may be from where rays start that go as far as `reach`, where a pixel is so wide.
+    /// Returns how far something may be from where rays start that go as far as `reach`, where a pixel is this wide.
     #[inline(always)]
     pub fn end<L: SimdFloat<Real = R>>(&self, reach: L, width: L) -> L {
         // Round things count up to their own size behind the end.

@@ -1,10 +1,10 @@
-//! The threads that tiles are shared between.
+//! The threads that share the tiles.
 
 /// A pool of tracing threads.
 #[derive(Debug)]
 pub struct Threads(rayon::ThreadPool);
 
-/// The system would not start the threads.
+/// The operating system did not start the threads.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot start {count} tracing threads: {source}")]
 pub struct PoolError {
@@ -13,7 +13,7 @@ pub struct PoolError {
 }
 
 impl Threads {
-    /// `count` threads, or one per core.
+    /// Starts `count` threads, or one per core.
     ///
     /// # Errors
     /// [`PoolError`] when the system refuses so many.
@@ -27,17 +27,17 @@ impl Threads {
             .map_err(|source| PoolError { count, source })
     }
 
-    /// How many there are where nobody asks for a number.
+    /// The number of threads if none is asked for.
     pub fn available() -> usize {
         std::thread::available_parallelism().map_or(1, usize::from)
     }
 
-    /// How many threads work that is not said to run elsewhere has.
+    /// The number of threads of the current pool: the global one outside of [`Self::run`].
     pub fn current() -> usize {
         rayon::current_num_threads()
     }
 
-    /// How many threads there are.
+    /// The number of threads.
     pub fn count(&self) -> usize {
         self.0.current_num_threads()
     }

@@ -5,9 +5,9 @@ use std::ops::Range;
 use crate::plan::Region;
 use crate::simd::Real;
 
-/// What a colour becomes in a picture.
+/// A pixel format that colours are converted to.
 pub trait Pixel: Send {
-    /// The pixel of a linear colour, 0–1.
+    /// Converts a linear colour, 0–1.
     fn of<R: Real>(red: R, green: R, blue: R) -> Self;
 }
 
@@ -21,12 +21,12 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// Whether some of its pixels are wanted.
+    /// Returns whether some of its pixels are in the region; `None` stands for the whole picture.
     pub fn is_in(&self, region: Option<Region>) -> bool {
         region.is_none_or(|region| region.meets(&self.columns, &self.rows))
     }
 
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub fn width(&self) -> usize {
         self.columns.len()
     }
@@ -35,19 +35,19 @@ impl Tile {
 /// One pass over a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
-    /// Every pixel, sampled as the picture asks.
+    /// Every pixel, sampled as requested for the picture.
     Whole,
     /// The centres of some pixels.
     Centres(Grid),
 }
 
-/// The pixels of one pass over a picture: those whose x and y are multiples of `step`, without
-/// those of the coarser pass before. Passes with steps 8, 4, 2, 1 trace every pixel exactly once.
+/// The pixels of one pass over a picture: those whose x and y are multiples of `step`, without those of the
+/// previous, coarser pass. Passes with steps 8, 4, 2, 1 trace every pixel exactly once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     /// Distance of neighbours in pixels, ≥ 1.
     pub step: usize,
-    /// Step of the pass before, a multiple of `step`.
+    /// Step of the previous pass, a multiple of `step`.
     pub coarser: Option<usize>,
 }
 
@@ -66,7 +66,7 @@ impl Grid {
         (first..to).step_by(step).filter(wanted)
     }
 
-    /// The pixels of a tile that the pass takes, row by row.
+    /// Returns the pixels of a tile (column, row) that belong to the pass, row by row.
     pub fn pixels(self, tile: &Tile) -> impl Iterator<Item = (usize, usize)> {
         let columns = tile.columns.clone();
         let rows = tile
@@ -85,7 +85,7 @@ impl Grid {
 pub struct TileColors<R> {
     /// 0–1.
     pub channels: [Vec<R>; 3],
-    /// Numbers from one row to the next.
+    /// Distance from one row to the next in `channels`.
     pub stride: usize,
 }
 
@@ -95,7 +95,7 @@ impl<R: Real> TileColors<R> {
         self.channels.each_ref().map(Vec::as_slice)
     }
 
-    /// Makes room, and leaves there what it was.
+    /// Makes room for `length` pixels, and keeps the colours of those that were there.
     pub fn resize(&mut self, stride: usize, length: usize) {
         self.stride = stride;
         for channel in &mut self.channels {
@@ -111,7 +111,7 @@ impl<R: Real> TileColors<R> {
         }
     }
 
-    /// Makes all pixels black.
+    /// Makes room for `length` pixels, all of them black.
     pub fn clear(&mut self, stride: usize, length: usize) {
         self.resize(stride, length);
         for channel in &mut self.channels {

@@ -22,47 +22,47 @@ use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double, is_filt
 use crate::scene::{Aspect, Sampling, Scene};
 use crate::simd::{Level, SimdReal};
 
-/// Side of a tile in pixels where there is little to see. Large enough that the bookkeeping does not
-/// show, small enough that the rays of a tile stay in the cache and that threads end together.
+/// Side of a tile in pixels if there is little to see. Large enough that the bookkeeping does not show, small enough
+/// that the rays of a tile stay in the cache and that threads end together.
 const LARGE_TILE: usize = 32;
-/// Side of a tile where there is much to see: it sees less of it.
+/// Side of a tile if there is much to see: each tile then sees less of it.
 const SMALL_TILE: usize = 16;
-/// Side of a tile where the rays of each are shown.
+/// Side of a tile if the cost of tiles is shown.
 const COST_TILE: usize = 8;
-/// With fewer pixels than this for each bounded primitive, there is much to see.
+/// Pixels per bounded primitive below which there is much to see.
 const PIXELS_PER_PRIMITIVE: u64 = 16_384;
 
-/// With fewer pixels than this for each, packets look at squares: what is seen in a row of sixteen pixels is
-/// more than in a square of them, but to put them in order costs time too.
+/// Pixels per bounded primitive below which packets cover squares: a row of sixteen pixels sees more than a square
+/// of them, but sorting them takes time, too.
 const PIXELS_IN_SQUARES: u64 = 128;
 
-/// Pieces of a picture for each thread, at least, where there are so many tiles. The dearest piece of a mesh of a
-/// million faces takes 20 times as long as others: with an eighth as many, 16 threads wait for the last of them a
-/// fifth of their time, and 64 half of it.
+/// Least number of pieces of a picture per thread, if there are that many tiles. The most expensive piece of a mesh
+/// of a million faces takes 20 times as long as others: with an eighth as many pieces, 16 threads wait for the last
+/// of them a fifth of their time, and 64 threads half of it.
 const PIECES_PER_THREAD: usize = 128;
 
-/// Pixels of a strip, at most: 16 MB of levels, or 48 of light. Smaller pictures are one strip.
+/// Most pixels of a strip: 16 MB as levels, or 48 MB as light. Smaller pictures are one strip.
 const STRIP: usize = 1 << 22;
-/// Strips have a multiple of so many rows: an EXR file is written in squares with this side, and a square is asked for
-/// row by row.
+/// The rows of a strip are a multiple of this: an EXR file is written in squares with this side, and a square is
+/// asked for row by row.
 const SQUARE: usize = 64;
 
-/// A picture of a scene, planned for the real type it needs.
+/// A picture of a scene, planned in the real type that it needs.
 #[derive(Debug)]
 pub struct Tracer {
     width: usize,
     height: usize,
-    /// Side of a tile.
+    /// Side of a tile in pixels.
     tile: usize,
     in_squares: bool,
     /// Rows of a strip.
     strip: usize,
-    /// The part that is traced.
+    /// The part that is traced; `None` for all of the picture.
     region: Option<Region>,
     sampling: Sampling,
     level: Level,
     plan: PlanOf,
-    /// What traces again what single precision leaves in doubt.
+    /// Traces samples again that single precision leaves in doubt.
     exact: Option<DoublePrecision>,
     workspace_pool: WorkspacePool,
 }
@@ -74,7 +74,7 @@ enum PlanOf {
 }
 
 impl PlanOf {
-    /// How many primitives have an end.
+    /// The number of bounded primitives.
     fn bounded(&self) -> u64 {
         let count = match self {
             Self::Single(plan) => plan.bounded(),
@@ -90,7 +90,7 @@ impl Tracer {
         Self::planned(scene, request, &mut Planner::default())
     }
 
-    /// The same after other pictures: what they need as well is not made again.
+    /// Plans a picture after others: what `planner` has kept of these is reused.
     pub fn planned(scene: &Scene, request: &RenderRequest, planner: &mut Planner) -> Self {
         let level = request.level.unwrap_or_else(Level::widest);
         let is_double = is_double(scene, request);
@@ -124,7 +124,7 @@ impl Tracer {
             strip: strip.clamp(SQUARE, height.max(SQUARE)),
             tile: match (request.aspect, request.sampling) {
                 (Aspect::Cost, _) => COST_TILE,
-                // It has one more corner than pixels in a row: they fill whole packets.
+                // A tile has one more corner in a row than pixels: its corners fill whole packets.
                 (_, Sampling::Adaptive { .. }) => side - 1,
                 _ => side,
             },
@@ -148,13 +148,13 @@ impl Tracer {
         self.height
     }
 
-    /// How many rows can be traced by themselves: pixels tell nothing to those of the next strip, so that it does not
-    /// matter which of them are traced at once.
+    /// The number of rows of a strip. Pixels send no messages to those of other strips, so that strips may be traced
+    /// separately.
     pub fn strip(&self) -> usize {
         self.strip
     }
 
-    /// The real type and how many of it are computed in step, for example `f32×16 avx2`.
+    /// The real type and the number of lanes, for example `f32×16 avx2`.
     pub fn lanes(&self) -> String {
         match self.plan {
             PlanOf::Single(_) => self.level.lanes_of::<f32>(),
@@ -162,11 +162,11 @@ impl Tracer {
         }
     }
 
-    /// Traces the pixels of `pass` into `pixels` (row by row from the top, `width × height`),
-    /// on the threads of the current rayon pool.
+    /// Traces the pixels of `pass` into `pixels` (row by row from the top, `width × height`), on the threads of the
+    /// current rayon pool.
     ///
-    /// The colours do not depend on the number of threads or lanes, or on what was traced before.
-    /// `None` if `control` said stop; some pixels are then still the old ones.
+    /// The colours do not depend on the number of threads or lanes, or on what was traced before. `None` if
+    /// `control` is stopped; some pixels then still have their old colours.
     pub fn pass<P: Pixel>(
         &self,
         pixels: &mut [P],
@@ -181,8 +181,8 @@ impl Tracer {
         Some(rays)
     }
 
-    /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`]. They are what they are in
-    /// the whole picture if they are a strip of it.
+    /// Traces whole rows of the picture, from `first` on, into `pixels`; see [`Self::pass`]. If they are a strip of
+    /// the picture, they are the same as in all of it.
     pub fn rows<P: Pixel>(
         &self,
         pixels: &mut [P],
@@ -205,15 +205,15 @@ impl Tracer {
         }
     }
 
-    /// How many columns the pieces have in which so many threads trace so many rows: whole rows of tiles, where those
-    /// are enough for all threads to end at nearly the same time.
+    /// Returns the number of columns in a piece if `threads` threads trace `rows` rows: whole rows of tiles, if that
+    /// is enough pieces for all threads to end at nearly the same time.
     fn columns_of_pieces(&self, rows: usize, threads: usize) -> usize {
         let bands = rows.div_ceil(self.tile).max(1);
         let pieces = (threads * PIECES_PER_THREAD).div_ceil(bands);
         self.width.div_ceil(self.tile).div_ceil(pieces).max(1) * self.tile
     }
 
-    /// The pieces of the picture that threads take, if there are so many.
+    /// Returns the pieces that the picture is divided into for a number of threads.
     fn pieces(&self, threads: usize) -> impl Iterator<Item = Region> {
         let piece = self.columns_of_pieces(self.height, threads);
         (0..self.height).step_by(self.tile).flat_map(move |top| {
@@ -225,7 +225,8 @@ impl Tracer {
         })
     }
 
-    /// How long each piece takes that so many threads would share, traced by this thread, one after the other.
+    /// Measures how long each of the pieces takes that a number of threads would share, one after the other on this
+    /// thread.
     pub fn time_pieces(&self, threads: usize) -> Vec<Duration> {
         match &self.plan {
             PlanOf::Single(plan) => self.time_pieces_of(plan, threads),
@@ -243,7 +244,7 @@ impl Tracer {
             let height = place.rows.1 - place.rows.0;
             let rows = pixels.chunks_mut(width).take(height).collect();
             let since = Instant::now();
-            // Nobody stops it.
+            // Never stopped.
             let control = RenderControl::default();
             let notes = (BandMessages::all(&messages), &control);
             let _ = self.piece((plan, &seen), (place, rows), samples, notes);
@@ -252,7 +253,7 @@ impl Tracer {
         self.pieces(threads).map(time).collect()
     }
 
-    /// Traces what one thread takes.
+    /// Traces a piece on this thread.
     fn piece<R: SimdReal, P: Pixel>(
         &self,
         (plan, seen): (&Plan<R>, &Candidates),
@@ -260,7 +261,7 @@ impl Tracer {
         (grid, sampling): (Grid, Sampling),
         (messages, control): (BandMessages, &RenderControl),
     ) -> Option<Rays> {
-        // Outside of the kernel, which is left alone; a piece is short beside what anybody waits for.
+        // Outside of the kernel, which is left alone; pieces are short compared with any pause.
         control.wait();
         let mut canvas = Pixels {
             place,
@@ -331,7 +332,7 @@ impl Tracer {
         }
     }
 
-    /// What the pixels of these rows are told by those beside them.
+    /// Creates the exchange of messages between the pixels of these rows; an empty one if the sampling needs none.
     fn edge_messages(&self, rows: Range<usize>, sampling: Sampling) -> EdgeMessages {
         match sampling {
             Sampling::Adaptive { .. } => EdgeMessages::new(self.width, rows),
@@ -339,7 +340,7 @@ impl Tracer {
         }
     }
 
-    /// Traces pixels again that were told something across the border of a tile.
+    /// Traces the pixels again that have received a message across the border of a tile.
     fn pass_notified<R: SimdReal, P: Pixel>(
         &self,
         seen: (&Plan<R>, &Candidates),
@@ -379,7 +380,7 @@ impl Tracer {
     }
 }
 
-/// The rows of pixels, so many wide, of each piece of so many columns.
+/// Splits rows of `width` pixels into pieces of `piece` columns: for each, its part of every row.
 fn in_pieces<P>(pixels: &mut [P], (width, piece): (usize, usize)) -> Vec<Vec<&mut [P]>> {
     let mut pieces: Vec<Vec<&mut [P]>> = Vec::new();
     pieces.resize_with(width.div_ceil(piece), Vec::new);

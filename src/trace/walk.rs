@@ -1,4 +1,4 @@
-//! The way of a packet through a tree of boxes, the nearest first.
+//! Traversal of a tree of boxes by a packet, nearest boxes first.
 
 use super::bundle::Bundle;
 use super::thin_margin::ThinMargin;
@@ -9,42 +9,42 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 /// A box that waits to be looked into.
 #[derive(Clone, Copy, Debug)]
 pub struct StackEntry<R> {
-    /// The node that it is in, and its place there.
+    /// The node that it is in, and its index there.
     node: u32,
     place: u32,
-    /// What it holds.
+    /// The node that it holds.
     inner: u32,
-    /// The rays that have seen a box around it as one thing, bit by bit.
+    /// The rays that have treated a box around it as one thing, bit by bit.
     settled: u64,
-    /// Where the first ray may enter it.
+    /// Distance at which the first ray may enter it.
     near: R,
 }
 
-/// Boxes that wait, the nearest last; memory that is used again.
+/// Boxes that wait, the nearest last; the memory is reused.
 pub type Stack<R> = Vec<StackEntry<R>>;
 
 /// Looks for something among the members of a tree.
 pub trait TreeVisitor<L: SimdFloat> {
-    /// How far each ray still looks; below 0 where it does not.
+    /// Returns how far each ray still looks; below 0 where it does not.
     fn reach(&self) -> L;
-    /// Whether nothing is to be found there.
+    /// Returns whether nothing is to be found in a child.
     fn is_culled(&self, _child: Child) -> bool {
         false
     }
-    /// Looks at a member, where a pixel is so wide at most if what is beside the rays is looked for.
+    /// Visits a member; `width` is the largest width of a pixel there, if things beside the rays are looked for.
     fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>);
-    /// Looks at a box, of which the ball around it and the thickness of what is in it are given, for the rays that
-    /// see it as one thing: those, and all that are not active, bit by bit.
+    /// Visits a box for the rays that see its contents as one thing, given the ball around it and the thickness of
+    /// its contents. Returns these rays and those that are not active, bit by bit.
     fn settle(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
         0
     }
-    /// What is met from now on counts for all rays but these.
+    /// Excludes these rays, bit by bit, from everything that is visited from now on.
     fn leave_out(&mut self, _settled: u64) {}
 }
 
-/// Where so few rays of a packet of so many still look into a box, each is held against what is in it by itself: what
-/// they have in common with the others meets more. One ray takes no longer than all together; of sixteen, two are the
-/// best of 1, 2, 3 and 5 for balls and meshes in their thousands: 0.75 to 0.8 of the time without.
+/// Returns up to how many of the rays of a packet are tested one by one if only these still look into a box: what
+/// they have in common with all others meets more boxes. One ray takes no longer than all together; of sixteen, two
+/// are the best of 1, 2, 3 and 5 for balls and meshes in their thousands: 0.75 to 0.8 of the time without.
 const fn few(lanes: usize) -> u32 {
     match lanes {
         1 => 0,
@@ -53,10 +53,10 @@ const fn few(lanes: usize) -> u32 {
     }
 }
 
-/// The number of the node that a walk starts in, which need not be the root of the tree.
+/// The number that stands for the node in which a traversal starts, which need not be the root of the tree.
 const START: u32 = u32::MAX;
 
-/// Shows `visitor` the members that the rays may meet, from a node on.
+/// Visits the members that the rays may hit, from a node on.
 #[inline(always)]
 pub fn walk<L: SimdFloat>(
     (bvh, start): (&Bvh<L::Real>, &Node),
@@ -66,7 +66,7 @@ pub fn walk<L: SimdFloat>(
 ) {
     let bottom = stack.len();
     let (mut index, mut node) = (START, start);
-    // The rays that meet the box around the node, bit by bit.
+    // The rays that hit the box around the node, bit by bit.
     let mut lanes = bundle.active.bits();
     loop {
         let mut nears = [L::Real::ZERO; GROUP];
@@ -96,7 +96,7 @@ pub fn walk<L: SimdFloat>(
                         settled: 0,
                         near,
                     };
-                    // Sorted as it grows: there are few.
+                    // Sorted by insertion: there are few.
                     let mut at = stack.len();
                     stack.push(entry);
                     while at > above && stack[at - 1].near < near {
@@ -131,8 +131,8 @@ pub fn walk<L: SimdFloat>(
     }
 }
 
-/// Shows `visitor` the thin members that the rays may come close to, but for those (bit by bit) that count no more
-/// from the start. Each ray sees the same, whichever others are beside it.
+/// Visits the thin members that the rays may come close to; the rays in `settled` (bit by bit) do not count from the
+/// start. What a ray is shown does not depend on the others of its packet.
 #[inline(always)]
 pub fn walk_thin<L: SimdFloat>(
     bvh: &Bvh<L::Real>,

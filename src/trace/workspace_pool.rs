@@ -1,20 +1,20 @@
-//! Memory that one piece of a picture leaves for the next: to find it anew costs as much as many rays.
+//! Memory that one piece of a picture leaves for the next: allocating it anew costs as much as many rays.
 
 use std::any::Any;
 use std::sync::{Mutex, PoisonError};
 
-/// What pieces work with that nobody traces, of a type that only they know: one for each thread at most.
+/// Memory that no piece is using, of a type that only the pieces know; one for each thread at most.
 #[derive(Debug, Default)]
 pub struct WorkspacePool(Mutex<Vec<Box<dyn Any + Send>>>);
 
 impl WorkspacePool {
-    /// Something of this type, if that is there.
+    /// Takes what was left last; `None` if there is nothing, or something of another type.
     pub fn take<T: Any>(&self) -> Option<Box<T>> {
         let left = self.kept().pop()?;
         left.downcast().ok()
     }
 
-    /// Leaves it for the next piece.
+    /// Leaves memory for the next piece.
     pub fn put<T: Any + Send>(&self, left: Box<T>) {
         self.kept().push(left);
     }

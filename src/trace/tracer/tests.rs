@@ -90,11 +90,11 @@ fn packets_in_squares_give_the_same_bits() {
     }
 }
 
-/// How many boxes there are.
+/// The number of boxes.
 const BOXES: u32 = 81;
 
-/// Boxes from above, turned differently: pixels tell those beside them, of other tiles and strips too, of corners that
-/// end in them.
+/// Returns a scene of boxes seen from above, each turned differently: pixels send messages, to other tiles and
+/// strips as well, about corners that end in them.
 fn boxes(turn: f64) -> Scene {
     let solid = SOLIDS.iter().find(|solid| solid.name == "Box");
     let solid = Mesh::of((solid.expect("there is").make)(0.75));
@@ -105,7 +105,7 @@ fn boxes(turn: f64) -> Scene {
     let boxes = (0..BOXES).map(|index| {
         let (along, down) = (f64::from(index % 9) - 4.0, f64::from(index / 9) - 4.0);
         let mesh = Mesh {
-            // Wider than what is looked for, and with corners that end in pixels.
+            // Wider than what counts as thin, and with corners that end in pixels.
             position: DVec3::new(along * 1.1 + down * 0.03, 0.0, down * 1.1),
             rotation: DVec3::new(0.0, turn * f64::from(index), 0.0),
             ..solid.clone()
@@ -170,7 +170,7 @@ fn a_large_picture_is_no_more_than_a_strip_in_memory() {
     }
 }
 
-/// Told to stop by the first pixel that is written.
+/// Stopped by the first pixel that is written.
 static FIRST: LazyLock<RenderControl> = LazyLock::new(RenderControl::default);
 
 #[derive(Clone, Copy)]
@@ -192,7 +192,7 @@ fn a_stopped_pass_writes_no_tile_that_was_being_traced() {
     let rays = threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &FIRST));
     assert_eq!(rays, None);
     let traced = FIRST.pixels.load(Ordering::Relaxed);
-    // The tile that told to stop, and those that the other threads were writing meanwhile.
+    // The tile that caused the stop, and those that the other threads were writing meanwhile.
     let most = (3 * tracer.tile * tracer.tile) as u64;
     assert!(
         traced <= most,
