@@ -92,7 +92,7 @@ impl VideoMaker {
         self.state = VideoState::Making(0);
     }
 
-    /// Asks the encoder to stop; it does so after the current frames.
+    /// Asks the encoder to stop, which may take a moment.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }

@@ -360,8 +360,8 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The staircase of the front: down to each dot, then to the right. Dots beyond it would be faster or more
-/// accurate.
+/// The staircase of the front: down to each dot, then to the right. For any point above it, some dot is both faster
+/// and more accurate.
 fn stairs(frame: Rect, dots: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
     let mut stairs = Vec::new();
     for dot in dots {

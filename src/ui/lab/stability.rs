@@ -24,7 +24,7 @@ pub struct Stability {
     maps: Vec<Map>,
     coming: Background<Vec<Map>>,
     chosen: usize,
-    /// Whether the background task that computes the maps has panicked.
+    /// Whether the background task that computes the maps has failed.
     has_failed: bool,
 }
 
