@@ -1,7 +1,7 @@
 //! The rendered pictures of the published scenes stay the same, byte for byte, until a change is intended.
 //!
-//! `picture_hashes.txt` holds a line for each picture: the BLAKE3 hash of its PPM file and the arguments of `glint
-//! render`. After an intended change, write it anew with
+//! `picture_hashes.txt` holds a line for each picture: the BLAKE3 hash of its PPM file and the arguments of
+//! `glint render`. After an intended change, write it anew with
 //!
 //! ```sh
 //! GLINT_WRITE_HASHES=1 cargo test --test it bytes::
