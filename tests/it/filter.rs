@@ -287,9 +287,9 @@ const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     far_and_wide,
     discs,
 ];
-/// Scenes of the first kinds have doubtful pixels in every picture.
+/// Number of kinds, from the first, of which every picture has doubtful pixels.
 const CROWDED: usize = 2;
-/// With clean edges, no pixel of the first kinds is wrong either; of the others, one may be in a scene or two.
+/// Number of kinds, from the first, with no wrong pixel with clean edges; others may have one in a scene or two.
 const CLEAN: usize = 3;
 
 #[test]

@@ -161,7 +161,7 @@ fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
     assert_eq!(traced, rays);
 }
 
-/// Returns whether a pixel's colour occurs in the other picture at most one pixel away.
+/// Returns whether a pixel is within the range of what the other picture shows there and right beside it.
 fn is_on_edge(pixel: [u8; 4], x: usize, y: usize, other: &Image) -> bool {
     let beside = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
     (0..3).all(|channel| {
@@ -416,7 +416,7 @@ fn ambient_diffuse_and_specular_add_up_as_written() {
 #[test]
 fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
     let mut scene = ball();
-    // The marker is between the ball and the camera, but its light is behind the marker.
+    // The marker is between the ball and the camera, with its light inside.
     scene.lights[0].position = DVec3::new(0.0, 0.0, 5.0);
     scene.light_visualization = false;
     assert_eq!(middle(&scene), [70, 65, 90], "hidden markers are not there");

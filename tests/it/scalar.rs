@@ -263,7 +263,7 @@ impl<'a> Engine<'a> {
         (spot.pack.diffuse * facing + spot.pack.specular * highlight) * light.intensity
     }
 
-    /// Whether the point is in shadow. A surface on which the light itself lies casts none of the light's.
+    /// Whether the point is in shadow. A surface on which the light itself lies does not block it.
     fn is_blocked(&self, ray: &Ray, distance: f64) -> bool {
         let mut others = self.things.iter().filter(|thing| !thing.is_marker);
         let end = distance * (1.0 - LITTLE);

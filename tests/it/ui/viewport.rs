@@ -307,7 +307,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
             source: egui::MouseWheelSource::Wheel,
             modifiers: Modifiers::NONE,
         });
-        // More than a single notch.
+        // Longer than one notch takes.
         (0..10).for_each(|_| harness.window.step());
         harness.settle();
     };
@@ -337,7 +337,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     let part = harness.picture();
     let traced = part.pixels.iter().filter(|pixel| pixel[3] == 255).count();
     assert!((4_000..40_000).contains(&traced), "{traced}");
-    // First the whole picture, then the live view.
+    // Escape leads to the whole picture first, and only then to the live view.
     harness.press(Modifiers::NONE, Key::Escape);
     let whole = harness.picture();
     let same = part.pixels.iter().zip(&whole.pixels);
