@@ -64,7 +64,7 @@ fn members_of_another_group_of_the_same_name_are_a_group_of_their_own() {
     let mut elsewhere = scene.clone();
     group(&mut scene, &[1, 2, 3]);
     group(&mut elsewhere, &[0, 1]);
-    // One of them has the name of an object that exists there.
+    // One of them has the name of a member of the group there.
     let selected = Selection::all([0, 1].map(Item::object));
     for item in paste(&mut scene, &excerpt(&elsewhere, &selected)) {
         assert_eq!(scene.objects[item.index].group, "Group 2");
