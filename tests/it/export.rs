@@ -432,7 +432,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     // A file has the name of the folder.
     let output = run(export(&obstacle, &[]).arg("--dry-run"));
     assert_eq!(output.status.code(), Some(1));
-    // A dry run writes nothing, so it fails to read.
+    // A dry run writes nothing, so the error is about reading.
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot read"));
 }
 

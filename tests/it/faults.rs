@@ -34,7 +34,7 @@ fn fail(command: &mut Command) -> String {
     said
 }
 
-/// A mesh file of two parts with this many faces, which becomes a scene file that contains them.
+/// Writes a mesh file of two parts with this many faces; converted, it gives a scene file that contains them.
 fn write_mesh(path: &Path, faces: usize) {
     let mut text = String::new();
     for face in 0..faces {

@@ -13,7 +13,7 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::to_bytes;
 use crate::ui::theme::{ROW, palette};
 
-/// Names with more letters than about fit into a row have a tooltip.
+/// Approximate number of letters that fit into a row; longer names have a tooltip.
 const LONG: usize = 18;
 
 /// The colour of an object's or a color pack's matte reflection; the ambient colour if that is black.

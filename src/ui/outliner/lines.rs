@@ -101,7 +101,7 @@ impl Groups {
 
 /// Which items of a kind are listed.
 pub enum Entries<'a> {
-    /// The first so many: all or none.
+    /// This many items from the first: all or none.
     All(usize),
     /// Those with these indices, in ascending order.
     Some(Vec<usize>),

@@ -58,7 +58,7 @@ pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     }
 }
 
-/// The camera with another projection. If things at the depth of `about` would change their size by [`MUCH`] or
+/// The camera with another projection. If things at the depth of `about` would change their size by `MUCH` or
 /// more, they keep their size instead; smaller differences stay, as the user chose the parameters that cause them.
 pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) -> Camera {
     let mut next = Camera {
