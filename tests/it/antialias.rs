@@ -1,4 +1,4 @@
-//! Clean edges: against many samples per pixel, in double precision, on the published views.
+//! Clean edges, compared with many samples per pixel in double precision, on the published views.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -22,24 +22,25 @@ fn linear(scene: &Scene, picture: &RenderRequest) -> (Vec<LinearRgb>, Rays) {
     trace_light(&tracer, &RenderControl::default()).expect("not stopped")
 }
 
-/// How far a picture is from the truth.
+/// How far a picture is from the reference.
 #[derive(Debug)]
 struct Quality {
-    /// Peak signal to noise, dB.
+    /// Peak signal-to-noise ratio, in dB.
     psnr: f64,
     /// Largest error of a channel, in levels of 255.
     worst: f64,
-    /// How many pixels have a larger one than [`INVISIBLE`].
+    /// Number of pixels with a larger error than [`INVISIBLE`].
     visible: usize,
     /// Camera rays per pixel.
     rays: f64,
 }
 
-/// Samples along each side of a pixel of the pictures whose mean is the truth: prime to each other, so that they have
-/// next to no place in common, and are off in other ways. Of the demo it is off by 75 dB, where 59 are asked for.
+/// Samples per side of a pixel in the two pictures whose mean is the reference. The numbers are coprime, so that
+/// the two share next to no sample positions and their errors differ. For the demo the reference is accurate to 75
+/// dB, where 59 are required.
 const TRUTH: [u32; 2] = [31, 33];
 
-/// What a picture of this size would be without jagged edges and in double precision.
+/// The reference for a picture of this size: without jagged edges and in double precision.
 fn truth_of(scene: &Scene, size: &RenderRequest) -> Vec<LinearRgb> {
     let [first, second] = TRUTH.map(|side| {
         let fine = RenderRequest {
@@ -52,7 +53,7 @@ fn truth_of(scene: &Scene, size: &RenderRequest) -> Vec<LinearRgb> {
     mean(&first, &second)
 }
 
-/// How far the picture is off that is asked for.
+/// Measures the requested picture against the reference.
 fn quality(scene: &Scene, picture: &RenderRequest) -> Quality {
     quality_against(&truth_of(scene, picture), scene, picture)
 }
@@ -72,9 +73,9 @@ fn quality_against(truth: &[LinearRgb], scene: &Scene, picture: &RenderRequest) 
     }
 }
 
-/// What 8 bits can show: the noise of their rounding.
+/// Best PSNR possible with 8 bits, due to rounding, in dB.
 const EIGHT_BITS: f64 = 58.9;
-/// Error of a channel, in levels of 255, that nobody sees in one pixel.
+/// Error of a channel, in levels of 255, that is invisible in a single pixel.
 const INVISIBLE: f64 = 8.0;
 
 fn picture(sampling: Sampling) -> RenderRequest {
@@ -84,7 +85,7 @@ fn picture(sampling: Sampling) -> RenderRequest {
     }
 }
 
-/// That of a picture with clean edges, so many pixels high and wide.
+/// The quality of a square picture with clean edges and this many pixels per side.
 fn quality_of_clean_edges(scene: &Scene, side: u32) -> Quality {
     let request = RenderRequest {
         sampling: Sampling::ADAPTIVE,
@@ -167,7 +168,7 @@ fn what_is_narrower_than_a_pixel_does_not_slip_through() {
     );
 }
 
-/// A sun of triangles with sharp tips, which throw no shadow.
+/// Triangles with sharp tips arranged like the rays of a sun; they cast no shadows.
 fn rays_of_a_sun() -> Scene {
     let mut scene = Scene::empty();
     let middle = DVec3::new(0.0, 0.0, -100.0);
@@ -218,7 +219,7 @@ fn tips_do_not_slip_through_in_shadows_and_mirrors_either() {
     );
 }
 
-/// Needles and grains over a black floor in whose highlight they cast shadows.
+/// Needles and grains over a black floor, casting shadows into its highlight.
 fn lacquer() -> Scene {
     let mut scene = Scene::empty();
     scene.camera.position = DVec3::new(0.0, 2.6, 3.2);
@@ -284,7 +285,7 @@ fn thin_shadows_are_seen_in_a_highlight_on_black() {
     );
 }
 
-/// Parasols on a floor, seen by somebody who stands among them: most of their shadows are flatter than a pixel.
+/// Parasols on a floor, seen by someone standing among them: most of their shadows are flatter than a pixel.
 fn parasols(floor: &[Shape]) -> Scene {
     let mut scene = Scene::demo();
     scene.light_visualization = false;
@@ -338,7 +339,7 @@ fn shadows_that_lie_flat_in_the_distance_are_seen() {
         (vec![Mesh::of(quad).into()], "mesh"),
     ] {
         let got = quality_of_clean_edges(&parasols(&floor), 160);
-        // With pixels that stretch no more there than elsewhere it is 37 dB, and off by 88 levels.
+        // If pixels were not stretched further there than elsewhere, it would be 37 dB, with errors of 88 levels.
         let is_clean = got.psnr >= 55.0 && got.worst <= 3.0 * INVISIBLE && got.visible <= 20;
         assert!(is_clean && got.rays <= 10.0, "{name}: {got:?}");
     }
@@ -363,11 +364,11 @@ fn thin_shadows_of_posts_in_the_distance_are_seen() {
     }
     scene.lights[0].position = DVec3::new(60.0, 40.0, -30.0);
     let got = quality_of_clean_edges(&scene, 160);
-    // As long as meshes of eight pixels were looked at as one thing, however few faces they have, it was 51 dB.
+    // It was 51 dB while meshes of eight pixels were treated as one thing, however few faces they have.
     assert!(got.psnr >= 53.0 && got.visible <= 30, "{got:?}");
 }
 
-/// Thousands of balls of one kind, each a part of a pixel large in pictures of 48², seen through each other.
+/// Thousands of equal balls, each a fraction of a pixel in pictures of 48², with gaps between them.
 fn cloud() -> Scene {
     let mut scene = Scene::demo();
     scene.camera.position = DVec3::ZERO;
@@ -405,7 +406,7 @@ fn many_small_things_of_one_kind_are_as_clean_as_a_grid_shows_them() {
     );
 }
 
-/// The demo with discs over its floor: some large, some narrower than a pixel, some all but edge-on.
+/// The demo with discs over its floor: some large, some narrower than a pixel, some almost edge-on.
 fn coins() -> Scene {
     let mut scene = Scene::demo();
     for n in 0..36 {
@@ -447,8 +448,8 @@ fn the_rims_of_discs_are_clean() {
     );
 }
 
-/// Shadows of two balls that nearly touch, from above: between them the light is narrower than a pixel. Looked at the
-/// other way, a mirror shows the same.
+/// Shadows of two balls that nearly touch, from above: the light between them is narrower than a pixel. Seen from
+/// the other side, a mirror shows the same.
 const WEDGES: &str = r#"Scene(version: 1, light_visualization: false,
     color_packs: {
         "floor": ColorPack(ambient: (60, 60, 60), diffuse: (220, 220, 220), phong_exponent: 0),
@@ -476,8 +477,8 @@ fn light_between_two_shadows_is_seen() {
     }
 }
 
-/// Balls over a floor, and two lamps that are as bright: where the shadow of one ends and that of the other begins, there
-/// is light of both between them, or of neither, and in many places it is narrower than a pixel.
+/// Balls over a floor with two equally bright lamps: where the shadow from one ends and that from the other begins,
+/// there is a region lit by both or by neither, in many places narrower than a pixel.
 fn balls_before_two_lamps() -> Scene {
     let text = r#"Scene(version: 1, light_visualization: false,
         camera: Camera(position: (0, 80, 190), look_at: (0, -0.25, -1), up: (0, 1, 0)),
@@ -515,8 +516,8 @@ fn light_of_two_lamps_or_of_none_between_their_shadows_is_seen() {
     );
 }
 
-/// Boxes from above, each turned a little more than the one before: their corners end in pixels of which none of the
-/// corners is on them.
+/// Boxes from above, each turned a little more than the previous one: their corners lie in pixels none of whose own
+/// corners is on the box.
 fn boxes() -> Scene {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for (row, column) in (0..9).flat_map(|row| (0..9).map(move |column| (row, column))) {
@@ -566,8 +567,8 @@ fn corners_of_boxes_that_end_in_a_pixel_are_seen() {
     );
 }
 
-/// A fan of faces from above: two dark ones of one colour, and between them a bright one, narrower than a pixel nearly
-/// all the way, which lies between the corners of pixels.
+/// A fan of faces from above: two dark ones of one colour, and between them a bright one that is narrower than a
+/// pixel over nearly its whole length and lies between pixel corners.
 const FAN: &str = r#"Scene(version: 1, light_visualization: false,
     color_packs: {
         "paper": ColorPack(ambient: (20, 20, 20), diffuse: (220, 200, 180), specular: (0, 0, 0)),
@@ -590,8 +591,9 @@ fn a_face_between_two_others_is_seen() {
     );
 }
 
-/// Folded paper from above, and a light so low that of each fold only a strip near its ridge, half a pixel wide, is not
-/// in the shadow of the one before: beside it are a face that looks away from the light, and a shadow of its colour.
+/// Folded paper from above, with a light so low that on each fold only a strip near the ridge, half a pixel wide,
+/// is outside the previous fold's shadow. Beside it are a face turned away from the light and a shadow, of equal
+/// colour.
 fn folds(smooth: f64) -> Scene {
     let column = |column: u32| {
         let (x, y) = (f64::from(column) - 5.0, f64::from(column % 2) - 1.0);
@@ -616,7 +618,7 @@ fn folds(smooth: f64) -> Scene {
 
 #[test]
 fn light_between_a_dark_side_and_a_shadow_is_seen() {
-    // Whether the folds are sharp because all edges are, or because they are sharper than 30°.
+    // The folds are sharp either because all edges are, or because their angle is above 30°.
     for smooth in [0.0, 30.0] {
         let got = quality_of_clean_edges(&folds(smooth), 65);
         assert!(
@@ -626,7 +628,7 @@ fn light_between_a_dark_side_and_a_shadow_is_seen() {
     }
 }
 
-/// Meshes that are narrower than they are thick: a card from its side, and the point of a spike; and their shadows.
+/// Meshes narrower than they are deep: a card seen from its side, and the point of a spike; and their shadows.
 const NARROW: &str = r#"Scene(version: 1, light_visualization: false,
     color_packs: {
         "paper": ColorPack(ambient: (20, 20, 20), diffuse: (220, 200, 180), specular: (0, 0, 0)),
@@ -715,7 +717,7 @@ fn a_grid_is_the_mean_of_its_samples() {
     }
 }
 
-/// A hoop of wire half a pixel thick before the demo's camera, with its faces wound one way or the other.
+/// A wire hoop half a pixel thick in front of the demo's camera, with its faces wound one way or the other.
 fn hoop(is_inside_out: bool) -> Scene {
     const AROUND: u32 = 60;
     const SIDES: u32 = 7;
@@ -772,7 +774,7 @@ fn wires_are_whole_whichever_way_their_faces_are_wound() {
     }
 }
 
-/// Corners of a board that stands upright, 100 away and a little turned: its left side and right side.
+/// Corners of an upright board at a distance of 100, turned a little, with these left and right sides.
 fn board(left: f64, right: f64) -> [DVec3; 4] {
     let (sine, cosine) = 0.02_f64.sin_cos();
     [(left, -40.0), (left, 40.0), (right, 40.0), (right, -40.0)]
@@ -817,7 +819,7 @@ fn gaps_between_things_of_one_colour_are_seen() {
     }
 }
 
-/// Squares of triangles, a pixel and a half wide, black and white in turn.
+/// Squares of triangles, a pixel and a half wide, alternately black and white.
 fn squares() -> Scene {
     let mut scene = rays_of_a_sun();
     scene.objects = List::default();
@@ -868,7 +870,7 @@ fn what_is_thin_inside_of_something_wide_costs_few_rays() {
         [&demo, &scene].map(|scene| linear(scene, &picture(Sampling::ADAPTIVE)));
     let difference = difference(&with, &without);
     assert!(difference.psnr() > 70.0, "{}", difference.psnr());
-    // Twice as many where the shadow of the ball is searched for theirs.
+    // It would be twice as many if the shadow of the ball were searched for those of the specks.
     assert!(
         rays.camera * 100 < few.camera * 115,
         "{} instead of {}",
@@ -966,7 +968,7 @@ fn slender_meshes_of_many_faces_are_seen() {
 #[test]
 fn fur_is_cleaner_than_dividing_its_pixels_further_makes_it() {
     let got = quality_of_clean_edges(&fur(2000), 64);
-    // Divided ever further, it was 50 dB, with twelve pixels far off, for 45 rays.
+    // Subdividing its pixels further gave 50 dB, with twelve pixels far off, for 45 rays.
     assert!(
         got.psnr >= 51.5 && got.visible <= 8 && got.rays <= 45.0,
         "{got:?}"

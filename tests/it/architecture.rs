@@ -1,14 +1,14 @@
-//! The rules of the house: who may import whom, and where each tool lives.
+//! The rules of the architecture: which modules may import which, and where each external tool is used.
 //!
-//! `lib.rs` and every `mod.rs` declare their modules in the order of their dependence: a file imports
-//! from modules that stand above its own, in its room and in the house. What a `mod.rs` defines itself
-//! stands on top of its room, and nothing in the room imports it.
+//! `lib.rs` and every `mod.rs` declare their modules in the order of dependence: a file imports only from modules
+//! declared before its own, within its folder and at the top level. What a `mod.rs` defines itself comes on top of
+//! its folder, and nothing in the folder imports it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A tool, by the paths that use it, and the only places that may.
+/// A tool, given by the paths that use it, and the only modules in which these may occur.
 const HOMES: &[(&[&str], &[&str])] = &[
     (&["egui", "eframe"], &["ui"]),
     (
@@ -46,33 +46,33 @@ const HOMES: &[(&[&str], &[&str])] = &[
     (&["fearless_simd"], &["simd"]),
 ];
 
-/// The rooms that compute with vectors of the processor; all others speak of geometry.
+/// The modules that compute with SIMD vectors; all others use geometric types.
 const SIMD_ROOMS: &[&str] = &["simd", "primitive", "plan", "trace", "image", "lab"];
-/// What of the SIMD room is no vector: how many lanes a request may ask for.
+/// The items of the `simd` module that are not vectors: the number of lanes that can be requested.
 const NO_VECTORS: &[&str] = &["Level"];
 
-/// Longest file, in lines: more than one can hold in the head.
+/// Maximum length of a file in lines, so that a reader can keep an overview of it.
 const LONGEST: usize = 450;
 
-/// A module: the names on the way to it from the crate's root.
+/// A module, as the names on its path from the crate's root.
 type Module = Vec<String>;
 
 /// The source of a crate, by module.
 struct House {
     texts: BTreeMap<Module, String>,
-    /// Modules that have modules of their own.
+    /// Modules that contain other modules.
     rooms: BTreeSet<Module>,
 }
 
-/// A path that a file names, and its line.
+/// A path named in a file, with its line.
 struct Named {
     line: usize,
     path: Vec<String>,
-    /// Whether it is passed on under the file's own name: `pub use`.
+    /// Whether it is re-exported: `pub use`.
     is_passed_on: bool,
 }
 
-/// The text without comments and tests, as long as it was, line by line.
+/// The text without comments and tests, with the same lines and lengths.
 fn code(text: &str) -> String {
     let lines = text
         .lines()
@@ -87,7 +87,7 @@ fn words(path: &str) -> Vec<String> {
         .collect()
 }
 
-/// The paths of one `use`, whose tree is taken apart.
+/// Expands the tree of a `use` into its paths.
 fn expand(tree: &str, before: &str, paths: &mut Vec<String>) {
     let tree = tree.trim();
     let joined = |last: &str| {
@@ -128,7 +128,7 @@ fn named(text: &str) -> Vec<Named> {
         let is_passed_on =
             trimmed.starts_with("pub use ") || trimmed.starts_with("pub(crate) use ");
         if trimmed.starts_with("use ") || is_passed_on {
-            // The statement may go on over lines.
+            // The statement may span several lines.
             let from = at + statement.len() - trimmed.len();
             let end = code[from..].find(';').map_or(code.len(), |end| from + end);
             let tree = code[from..end].trim_start_matches("pub ");
@@ -169,7 +169,7 @@ fn named(text: &str) -> Vec<Named> {
 }
 
 impl House {
-    /// A house of files, by their paths below `src`.
+    /// Creates a house from files, given by their paths below `src`.
     fn new<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let mut house = Self {
             texts: BTreeMap::new(),
@@ -190,7 +190,7 @@ impl House {
         house
     }
 
-    /// The modules of a room, in the order in which it declares them.
+    /// The modules within a module, in the order of their declaration.
     fn order(&self, room: &Module) -> Vec<String> {
         let text = self.texts.get(room).map_or("", String::as_str);
         let code = code(text);
@@ -202,8 +202,7 @@ impl House {
         names.map(str::to_owned).collect()
     }
 
-    /// The module that a path leads to from `here`: through what rooms pass on, to where it is defined.
-    /// `None` for other crates.
+    /// The module that defines what a path names, as seen from `here`, through re-exports. `None` for other crates.
     fn target(&self, here: &Module, path: &[String]) -> Option<Module> {
         let mut at: Module = match path.first()?.as_str() {
             "crate" => Vec::new(),
@@ -241,14 +240,14 @@ impl House {
         self.texts.contains_key(&module)
     }
 
-    /// What is wrong with importing `to` from `from`.
+    /// What is wrong with importing `to` from `from`, if anything.
     fn fault(&self, from: &Module, to: &Module) -> Option<String> {
         let shared = from.iter().zip(to).take_while(|(a, b)| a == b).count();
         let room = from[..shared].to_vec();
         let name = |module: &Module| module.join("/");
         let here = from.get(shared)?;
         let Some(there) = to.get(shared) else {
-            // What stands on top of a room is not for those inside.
+            // What a `mod.rs` defines must not be used by the modules within.
             return (self.rooms.contains(to) && !room.is_empty())
                 .then(|| format!("{here} must not import what {}/mod.rs defines", name(&room)));
         };
@@ -264,7 +263,7 @@ impl House {
             .then(|| format!("{} must not import {}", name(from), name(to)))
     }
 
-    /// Every fault: `path:line: what`.
+    /// Every violation, as `path:line: what`.
     fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         for (module, text) in &self.texts {
@@ -327,7 +326,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The files of the house, and what is written in them.
+/// The source files with their contents.
 fn texts() -> Vec<(String, String)> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = Vec::new();
@@ -341,7 +340,7 @@ fn texts() -> Vec<(String, String)> {
     texts.collect()
 }
 
-/// The types that a file shows to others.
+/// The public types that a file defines.
 fn public_types(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| {
         let line = line.strip_prefix("pub ")?;
@@ -406,14 +405,14 @@ fn the_test_sees_what_it_looks_for() {
         files.insert(path, text);
         !House::new(files).faults().is_empty()
     };
-    // Between rooms.
+    // Between top-level modules.
     assert!(seen("scene/shape.rs", "use crate::trace::Tile;"));
     assert!(seen("scene/shape.rs", "use crate::{files, trace::Tile};"));
     assert!(seen("ui/app.rs", "use crate::cli::run;"));
     assert!(seen("cli/mod.rs", "    crate::ui::run();"));
     assert!(!seen("trace/tile.rs", "use crate::scene::Shape;"));
     assert!(!seen("trace/tile.rs", "// crate::ui is far away"));
-    // Inside a room: upwards, through what the room passes on, and around.
+    // Within a module: in the wrong order, through re-exports, and in circles.
     assert!(seen("trace/stats.rs", "use super::shade::Shader;"));
     assert!(seen(
         "trace/stats.rs",
@@ -427,7 +426,7 @@ fn the_test_sees_what_it_looks_for() {
         "trace/shade.rs",
         "use super::Tile;\nuse super::stats::Rays;"
     ));
-    // A circle of two files cannot be in order.
+    // Two files that import each other cannot be in order.
     assert!(seen("scene/shape.rs", "use super::file::load;"));
     // Tools.
     assert!(seen("trace/tile.rs", "use std::fs;"));

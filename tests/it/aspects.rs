@@ -1,4 +1,4 @@
-//! What can be shown in place of the light, against what it should be.
+//! The views that show other quantities than light, compared with their expected values.
 
 use glam::DVec3;
 use glint::image::{Image, LinearImage, render, render_light_into};
@@ -14,7 +14,7 @@ fn light_of(scene: &Scene, request: &RenderRequest) -> LinearImage {
     image
 }
 
-/// A ball of radius 10 around the origin, seen from z = 50 along -z, one light far to the right.
+/// A sphere of radius 10 around the origin, seen from z = 50 along -z, with one light far to the right.
 fn ball() -> Scene {
     let mut scene = Scene::empty();
     scene.camera.position = DVec3::new(0.0, 0.0, 50.0);
@@ -71,7 +71,7 @@ fn normals_depth_and_shadows_of_a_ball_are_those_of_geometry() {
                     let normal = (origin + direction * t) / 10.0;
                     let expected = match aspect {
                         Aspect::Normals => normal * 0.5 + 0.5,
-                        // The ball around a cube of 20 begins at 50 - 10·√3, and is 20·√3 deep.
+                        // The bounding sphere of a cube of side 20 begins at 50 - 10·√3, and is 20·√3 deep.
                         Aspect::Depth => {
                             let deep = 10.0 * 3.0_f64.sqrt();
                             DVec3::splat(1.0 - (t - (50.0 - deep)) / (2.0 * deep))

@@ -1,7 +1,7 @@
-//! The published scenes keep their pictures, byte by byte, until somebody means to change them.
+//! The rendered pictures of the published scenes stay the same, byte for byte, until a change is intended.
 //!
-//! `picture_hashes.txt` holds a line for each picture: the BLAKE3 hash of its PPM file and the
-//! arguments of `glint render`. After a change that is meant to show, write it anew with
+//! `picture_hashes.txt` holds a line for each picture: the BLAKE3 hash of its PPM file and the arguments of
+//! `glint render`. After an intended change, write it anew with
 //!
 //! ```sh
 //! GLINT_WRITE_HASHES=1 cargo test --test it bytes::
@@ -15,14 +15,14 @@ use crate::scenes::files_in;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// What every scene is rendered with.
+/// Arguments with which every scene is rendered.
 const EACH: [&str; 3] = [
     "--antialias none",
     "--antialias adaptive",
     "--antialias none --precision f64",
 ];
 
-/// What single scenes are rendered with besides.
+/// Additional arguments for particular scenes.
 const MORE: [(&str, &str); 13] = [
     ("flight.ron", "--antialias none --frame 40"),
     ("flight.ron", "--antialias adaptive --frame 160"),

@@ -92,7 +92,7 @@ fn a_sampling_is_chosen_by_what_was_asked_of_the_picture() {
         let antialias = chosen["antialias"].as_str().expect("a sampling");
         (antialias == "none", chosen["is_met"] == true)
     };
-    // Which is the fastest of those that are close enough, a busy machine may see otherwise.
+    // Which of the sufficiently accurate ones is fastest may vary on a busy machine.
     assert!(chosen(["--within", "1dB"]).1);
     assert_eq!(chosen(["--within", "50dB"]), (false, true));
     assert_eq!(chosen(["--within", "300dB"]), (false, false));
@@ -251,7 +251,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
 
 #[test]
 fn failed_work_exits_with_1_and_names_the_file() {
-    // What takes minutes is not begun.
+    // Work that would take minutes is not started.
     let cases: [&[&str]; 6] = [
         &["render", DEMO, "--width", "16384", "-o"],
         &["chart", DEMO, "--png"],
@@ -316,7 +316,7 @@ fn plan_says_what_a_scene_needs() {
             .iter()
             .all(|key| need[key].is_string())
     }));
-    // What a tree spares is counted on the picture at hand.
+    // The savings of a tree are counted on this particular picture.
     let knot = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/knot.ron");
     let said = text(&glint(folder().path(), &["plan", knot]).stdout);
     assert!(
@@ -391,7 +391,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
             .is_some_and(|line| line.starts_with("take ")),
         "{said}"
     );
-    // Not in the place of the scene, of a mesh, or of a picture.
+    // Scenes, meshes and pictures are not overwritten.
     let scene = folder.path().join("own.ron");
     std::fs::copy(DEMO, &scene).expect("copied");
     for name in ["knot.ply", "p.png", "other.ron"] {
@@ -421,7 +421,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
     let measurements: Vec<&str> = lines.collect();
     assert!(measurements.len() > 30, "{}", measurements.len());
     for dot in measurements {
-        // Texts are in quotation marks and may hold commas.
+        // Texts are quoted and may contain commas.
         let plain: String = dot.split('"').step_by(2).collect();
         assert_eq!(plain.split(',').count(), columns, "{dot}");
         assert!(dot.contains("f32×") || dot.contains("f64×"), "{dot}");
@@ -463,7 +463,7 @@ fn stability_tells_the_robust_from_the_rest() {
         .lines()
         .filter(|line| line.starts_with("* ") && line.contains('%'))
     {
-        // Far below the width of a pixel every sampling misses something.
+        // Far below the width of a pixel, every sampling misses something.
         let is_robust = line.ends_with("nowhere") || line.contains("thin things");
         assert!(is_robust, "{line}");
     }

@@ -1,5 +1,5 @@
-//! What touches: surfaces in each other, lights and eyes on surfaces. The picture shows no speckle, and the
-//! same in single and in double precision, with a list and with a tree.
+//! Contacts: coincident surfaces, lights and cameras on surfaces. The picture has no speckle, and is the same in
+//! single and double precision, with a list and with a tree.
 
 use glam::DVec3;
 use glint::image::Image;
@@ -24,7 +24,7 @@ fn pack(color: [f64; 3]) -> ColorPack {
     }
 }
 
-/// Objects in red and blue by turns, seen from above.
+/// Objects that are alternately red and blue, seen from above.
 pub fn scene(shapes: impl IntoIterator<Item = Shape>) -> Scene {
     let mut scene = Scene::empty();
     scene.packs_mut().clear();
@@ -86,7 +86,7 @@ fn ceiling() -> Shape {
     triangle([[-3.0, 5.0, -3.0], [3.0, 5.0, -3.0], [0.0, 5.0, 3.0]])
 }
 
-/// The picture in a precision, found as the plan likes.
+/// The picture in a precision, with the accelerator that the plan chooses.
 pub fn at(scene: &Scene, precision: Precision) -> Image {
     let wanted = RenderRequest {
         precision,
@@ -95,7 +95,7 @@ pub fn at(scene: &Scene, precision: Precision) -> Image {
     picture(scene, &wanted).0
 }
 
-/// The picture, after all ways to it have given the same.
+/// The picture, after asserting that all ways to compute it agree.
 pub fn steady(scene: &Scene, what: &str) -> Image {
     let of = |precision, accelerator| {
         let wanted = RenderRequest {
@@ -114,7 +114,7 @@ pub fn steady(scene: &Scene, what: &str) -> Image {
     double
 }
 
-/// How many pixels are more blue than red, and the other way round.
+/// The numbers of pixels that are more blue than red, and the other way round.
 pub fn blue_and_red(image: &Image) -> (usize, usize) {
     let count = |is: fn(&[u8; 4]) -> bool| image.pixels.iter().filter(|pixel| is(pixel)).count();
     (count(|[r, _, b, _]| b > r), count(|[r, _, b, _]| r > b))
@@ -130,7 +130,7 @@ fn of_surfaces_in_each_other_the_first_is_seen() {
     assert!(red > all / 20 && blue > all / 2, "{blue} {red}");
     assert_eq!(seen([ball(), ball()], "two balls in one place").0, 0);
 
-    // A slanting plane, of which rounding makes two.
+    // A slanting plane, which after rounding is two different ones.
     let (point, normal) = (DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 1.0, 0.2));
     let disc = || {
         let (center, radius) = (point, 2.0);
@@ -159,7 +159,7 @@ fn disc_of(height: f64) -> Shape {
     .into()
 }
 
-/// A sheet of so many squares a side in a plane, that many units wide, about its own middle.
+/// A planar sheet with this many squares per side, `width` units wide, about its centre.
 pub fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> Shape {
     let side = squares + 1;
     let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
@@ -178,7 +178,7 @@ pub fn sheet(squares: u32, width: f64, (position, rotation): (DVec3, DVec3)) -> 
     mesh.into()
 }
 
-/// A box with these half sides about a point, turned.
+/// A box with these half extents about a point, rotated.
 pub fn block(half: DVec3, (position, rotation): (DVec3, DVec3)) -> Shape {
     let mesh = Mesh {
         position,
@@ -215,7 +215,7 @@ fn of_faces_of_meshes_in_other_surfaces_the_first_is_seen() {
     let (_, red) = seen([disc_of(0.0), sheet(7, 2.0, flat)], "a sheet under a disc");
     assert!(red > all / 20);
 
-    // A cross of two boxes that are equally high: the first one's top is whole.
+    // A cross of two equally high boxes: the top of the first is uninterrupted.
     let (long, wide) = (DVec3::new(1.7, 0.6, 0.5), DVec3::new(0.5, 0.6, 1.7));
     let cross = [block(long, turned), block(wide, turned)];
     let (_, first) = seen(cross.clone(), "a cross");
@@ -248,7 +248,7 @@ fn what_looks_alike_in_one_place_casts_no_shadow_there() {
     assert_same_but_for_edges(&both, &alone, "a disc in a sheet");
 }
 
-/// The same picture in both precisions; meshes stand in no list.
+/// Asserts that both precisions agree on the picture, and returns it; meshes are never in a list.
 pub fn steady_mesh(scene: &Scene, what: &str) -> Image {
     let double = at(scene, Precision::Double);
     let single = at(scene, Precision::Single);
@@ -270,7 +270,7 @@ fn a_solid_that_stands_on_a_floor_is_not_told_of_and_one_in_the_floor_is() {
         told([floor(), sheet(2, 4.0, (DVec3::ZERO, DVec3::ZERO))]),
         1
     );
-    // From below, both are seen in the same place, and so they are from beside a floor that the box hangs under.
+    // From below, box and floor coincide, and also from above with the box hanging under the floor.
     let mut below = scene([floor(), stands(1.0)]);
     below.camera.position.y = -4.0;
     below.camera.look_at.y = 0.5;
@@ -302,7 +302,7 @@ fn surfaces_all_but_in_each_other_cast_no_shadow_on_each_other() {
     }
 }
 
-/// A mesh as a file has it, seen from above.
+/// A mesh in the notation of scene files, seen from above.
 fn faces_of(mesh: &str) -> Scene {
     let text = format!(
         r#"Scene(version: 1, light_visualization: false,
@@ -320,7 +320,7 @@ fn which_faces_are_one_curved_surface_is_the_same_in_any_precision() {
         faces: [(0,1,3),(0,3,2),(4,6,7),(4,7,5),(0,4,5),(0,5,1),(2,3,7),(2,7,6),(0,2,6),(0,6,4),(1,5,7),(1,7,3)], \
         rotation: (30, 20, 10)";
     let right = |smooth: f64| faces_of(&format!("{cube}, smooth: {smooth}"));
-    // Faces that meet at just the angle stay flat, however they are turned.
+    // Faces that meet at exactly the limiting angle stay flat, however they are rotated.
     let flat = steady(&right(0.0), "a cube");
     assert!(flat == steady(&right(90.0), "a cube at its angle"));
     assert!(flat != steady(&right(91.0), "a round cube"));
@@ -380,8 +380,8 @@ fn a_light_on_a_surface_is_not_behind_it() {
     steady(&lit, "a lamp on the floor");
 }
 
-/// The border of its light is the line in which the floor meets the plane that touches the ball at the light, straight
-/// to the last pixel: rounding decides nowhere whether the ball stands before what is on it.
+/// The light ends at the line where the floor meets the plane that touches the ball at the light, exact to the
+/// pixel: rounding nowhere decides whether the ball hides a light on its surface.
 #[test]
 fn a_light_on_a_ball_shines_up_to_the_plane_that_touches_it_there() {
     let outwards = DVec3::new(0.48, 0.6, 0.64);

@@ -1,4 +1,4 @@
-//! Where copies stand, and which groups they are in.
+//! Where copies are placed, and which groups they belong to.
 
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ fn no_copy_is_where_another_thing_is() {
     let mut scene = Scene::demo();
     let selected = [Item::object(0), Item::object(1), Item::light(0)];
     let part = excerpt(&scene, &Selection::all(selected));
-    // The first has gone, the second has not.
+    // The first object has been moved away, the second has not.
     let shape = scene.objects[0].shape.moved(DVec3::Y * 1000.0);
     scene.objects[0].shape = shape;
     for copies in 1..4 {
@@ -64,7 +64,7 @@ fn members_of_another_group_of_the_same_name_are_a_group_of_their_own() {
     let mut elsewhere = scene.clone();
     group(&mut scene, &[1, 2, 3]);
     group(&mut elsewhere, &[0, 1]);
-    // One of them is called as one there.
+    // One of them has the name of a member of the group there.
     let selected = Selection::all([0, 1].map(Item::object));
     for item in paste(&mut scene, &excerpt(&elsewhere, &selected)) {
         assert_eq!(scene.objects[item.index].group, "Group 2");

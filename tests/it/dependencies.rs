@@ -1,11 +1,11 @@
-//! What the program is built from: every crate may be passed on with it, and each that it asks for itself has a
-//! sentence that says what for.
+//! The program's dependencies: the licence of every crate allows redistribution, and each direct dependency has a
+//! comment that says what it is for.
 
 use std::process::Command;
 
 use serde_json::Value;
 
-/// Licences that ask for no more than to be named.
+/// Licences that require no more than attribution.
 const FREE: [&str; 12] = [
     "MIT",
     "Apache-2.0",
@@ -21,10 +21,11 @@ const FREE: [&str; 12] = [
     "Ubuntu-font-1.0",
 ];
 
-/// Crates of which several versions are built in, because others need them: more would be noticed here.
+/// Maximum number of crates that are built in several versions because others need them; an increase would be
+/// noticed here.
 const MOST_TWICE: usize = 16;
 
-/// Whether an SPDX expression can be met with [`FREE`]. The text that is left comes back.
+/// Returns whether an SPDX expression can be met with [`FREE`], and the rest of the text.
 fn any_of(text: &str) -> (bool, &str) {
     let (mut is_free, mut rest) = all_of(text);
     while let Some(next) = rest.strip_prefix("OR ").or(rest.strip_prefix('/')) {
@@ -51,7 +52,7 @@ fn one(text: &str) -> (bool, &str) {
     }
     let end = text.find([' ', ')', '/']).unwrap_or(text.len());
     let (name, mut rest) = (&text[..end], text[end..].trim_start());
-    // An exception takes nothing away.
+    // An exception only adds permissions.
     if let Some(exception) = rest.strip_prefix("WITH ") {
         let end = exception.find([' ', ')']).unwrap_or(exception.len());
         rest = exception[end..].trim_start();
@@ -137,7 +138,7 @@ fn every_dependency_says_what_it_is_for() {
             .collect();
         for (number, line) in lines.iter().enumerate() {
             let is_told = number > 0 && lines[number - 1].starts_with("# ");
-            // What belongs together may share a sentence.
+            // Dependencies that belong together may share a comment.
             let is_pair = line.starts_with("serde ");
             assert!(line.starts_with('#') || is_told || is_pair, "{line}");
         }

@@ -1,4 +1,4 @@
-//! Sequences on disk: the real program, real files, killed and damaged on the way.
+//! Exported frame sequences: the real program and real files, with the program killed and files damaged in between.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -42,7 +42,7 @@ fn export(folder: &Path, more: &[&str]) -> Command {
     command
 }
 
-/// What a command that does its work says on stderr.
+/// What a successful command writes to stderr.
 fn warned(command: &mut Command) -> String {
     let output = run(command);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -50,7 +50,7 @@ fn warned(command: &mut Command) -> String {
     said
 }
 
-/// The files of a folder but the notes, whose times differ.
+/// The files of a folder except the notes, which contain times.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).expect("a folder");
     let entries = entries.map(|entry| entry.expect("an entry").path());
@@ -93,7 +93,7 @@ fn a_killed_export_goes_on_and_ends_as_if_nothing_had_been() {
             kills += 1;
         }
         child.wait().expect("ended");
-        // When it got to the end, some frames are damaged and it is killed again.
+        // If it got to the end, some frames are removed, so that it can be killed again.
         let frames: Vec<_> = fs::read_dir(&killed)
             .map(Iterator::collect)
             .unwrap_or_default();
@@ -120,7 +120,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     );
     let before = files(&frames);
     assert!(before.contains_key("rayTrace1.ppm") && before.contains_key("rayTrace12.ppm"));
-    // Cut off, empty, gone, and another program's.
+    // Truncated, empty, missing, and another program's.
     let path = |frame: u32| frames.join(format!("rayTrace{frame}.ppm"));
     let bytes = fs::read(path(2)).expect("there");
     fs::write(path(2), &bytes[..bytes.len() / 2]).expect("written");
@@ -134,7 +134,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let said = done(&mut export(&frames, &twelve));
     assert!(said.contains("4 frames written, 8 there already"), "{said}");
     assert!(files(&frames) == before);
-    // A note that was cut off is none.
+    // A truncated note counts as none.
     let notes = frames.join("glint-frames.txt");
     let text = fs::read_to_string(&notes).expect("there");
     let lines: Vec<&str> = text.lines().collect();
@@ -142,12 +142,12 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     fs::write(&notes, cut).expect("written");
     let said = done(&mut export(&frames, &twelve));
     assert!(said.contains("8 frames written, 4 there already"), "{said}");
-    // Settings are part of what a frame shows.
+    // A frame also depends on the render settings.
     let said = done(export(&frames, &twelve).args(["--antialias", "none"]));
     assert!(said.contains("12 frames written"), "{said}");
 }
 
-/// Both find the same frames missing, and write them beside each other under the same names.
+/// Both find the same frames missing, and write them at the same time under the same names.
 #[test]
 fn two_exports_into_one_folder_do_not_hurt_each_other() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -314,7 +314,7 @@ fn a_video_that_cannot_be_is_told_before_the_first_frame() {
     assert!(files(&frames).contains_key("x.gif"));
 }
 
-/// The flight at another rate and size, and its first frames.
+/// Exports the flight at another frame rate and size; `words` select the frames.
 fn at_rate(folder: &Path, fps: &str, size: (u32, u32), words: &[&str]) -> Command {
     let text = fs::read_to_string(FLIGHT).expect("readable");
     let rate = format!("frames_per_second: {fps}");
@@ -347,7 +347,7 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
         assert!(said.contains("at least 2 × 2 pixels"), "{said}");
         assert!(!folder.path().join("frames").exists());
     }
-    // Frames that are too short for a GIF's clock are left out, but never all of them.
+    // Frames too short for the clock of a GIF are left out, but never all of them.
     for (fps, frames, told, shown) in [
         ("120", "1-8", "leaves out 4 of 8", 4),
         ("240", "1-2", "leaves out 1 of 2", 1),
@@ -385,7 +385,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
     };
     let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
     assert!(again(&scene).contains("202 frames written"));
-    // The last key moves: what is before its neighbours stays.
+    // The last key is moved: frames before its neighbour stay.
     let last = scene.animation.keys.len() - 1;
     scene.animation_mut().keys[last].value.position.y += 1.0;
     let said = again(&scene);
@@ -400,7 +400,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
         again(&scene).contains("202 frames written"),
         "all of them show the sky's colour"
     );
-    // The recording is not in the picture.
+    // The recording does not affect the pictures.
     scene.animation_mut().take = None;
     assert!(again(&scene).contains("0 frames written, 202 there already"));
 }
@@ -409,7 +409,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
 fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     let folder = tempfile::tempdir().expect("a folder");
     let frames = folder.path().join("frames");
-    // A folder stands where a frame should go.
+    // A folder has the name of a frame.
     let obstacle = frames.join("rayTrace7.ppm");
     fs::create_dir_all(&obstacle).expect("made");
     let output = run(&mut export(&frames, &["--frames", "1-12"]));
@@ -429,14 +429,14 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     assert!((6..12).contains(&made.len()));
     done(&mut export(&frames, &["--frames", "1-12"]));
     assert_eq!(files(&frames).len(), 12);
-    // A file stands where the folder should be.
+    // A file has the name of the folder.
     let output = run(export(&obstacle, &[]).arg("--dry-run"));
     assert_eq!(output.status.code(), Some(1));
-    // Nothing was to be written.
+    // A dry run writes nothing, so the error is about reading.
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot read"));
 }
 
-/// The system lets a program write so much and no more, as a full disk does: half a frame.
+/// The system lets a program write only so many bytes, as a full disk does: half a frame.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_told_and_gone_on_from() {
@@ -499,7 +499,7 @@ fn frames_that_another_export_has_replaced_are_told_before_anything_is_made_of_t
     for _ in 0..2 {
         assert!(matches!(own.step(&control), ExportStep::Going));
     }
-    // The same frames, written by another program too, are no others.
+    // The same frames written by another program do not count as changed.
     for (scene, is_told) in [(&scene, false), (&darker, true)] {
         let mut other = begin(scene, "1");
         while !matches!(other.step(&control), ExportStep::Done) {}
@@ -637,14 +637,14 @@ fn runners_are_told_how_far_it_is() {
     let shares: Vec<f64> = shares
         .map(|share| share.parse().expect("a number"))
         .collect();
-    // Each once: a runner keeps every line.
+    // Each only once, as a runner keeps every line.
     assert!(
         shares.windows(2).all(|pair| pair[0] < pair[1]),
         "{shares:?}"
     );
 }
 
-/// The frames of a GIF, in red, green, blue and opacity.
+/// The frames of a GIF as RGBA.
 fn gif_frames(path: &str) -> Vec<gif::Frame<'static>> {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
@@ -673,7 +673,7 @@ fn videos_without_ffmpeg_hold_every_frame() {
         shown[0].delay, 14,
         "2/14 s in hundredths: every second frame plays at the speed of all"
     );
-    // Each is nearest to its own frame, although several are packed beside each other.
+    // Each matches its own frame best, although several are encoded in parallel.
     let plain = |frame| image::open(frames.join(format!("rayTrace{frame}.png"))).expect("there");
     let plain: Vec<Vec<u8>> = (1..=9)
         .step_by(2)
@@ -707,7 +707,7 @@ fn videos_without_ffmpeg_hold_every_frame() {
             "frame {frame} is lossless"
         );
     }
-    // Without ffmpeg the exact command is told; with it there is a video.
+    // Without ffmpeg, the error shows the exact command; with it, there is a video.
     let mp4 = video("flight.mp4");
     let output = run(export(&frames, &["--frames", "1-9:2", "--video", &mp4]).env("PATH", ""));
     let said = String::from_utf8_lossy(&output.stderr);
@@ -716,7 +716,7 @@ fn videos_without_ffmpeg_hold_every_frame() {
         said.contains("ffmpeg -framerate 7") || said.contains("ffmpeg -f image2pipe"),
         "{said}"
     );
-    // Of frames in a row no more than were asked for, also where others lie beside them.
+    // Of consecutive frames no more than requested, even where others exist in the folder.
     let output = run(export(&frames, &["--frames", "3-5", "--video", &mp4]).env("PATH", ""));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("-frames:v 3 "), "{said}");
@@ -747,7 +747,7 @@ fn ffmpeg_makes_videos_of_all_frames() {
         let said = done(probe.args(["-of", "csv=p=0", path]));
         assert_eq!(said.trim(), "14/1,28", "{name}");
     }
-    // Players guess by the size how colours are meant where nothing is said.
+    // Without this information, players guess the colour space from the size.
     for name in ["a.mp4", "b.mov"] {
         let mut probe = Command::new("ffprobe");
         probe.args(["-v", "error", "-show_entries"]);
@@ -768,14 +768,14 @@ fn ffmpeg_makes_videos_of_all_frames() {
             "{name}"
         );
     }
-    // What was left out is not waited for.
+    // Frames that were left out are not waited for.
     let uneven = export(
         &frames,
         &["--frames", "1,5,6", "--video", &path("uneven.gif")],
     );
     let said = warned(&mut { uneven });
     assert!(said.contains("not equally far apart"), "{said}");
-    // H.264 has even sides.
+    // H.264 requires even sides.
     let odd = ["--frames", "1-2", "--video", &path("odd.mp4")];
     let said = warned(&mut at_rate(folder.path(), "14", (31, 17), &odd));
     assert!(said.contains("it shows 30 × 16 pixels"), "{said}");
@@ -784,7 +784,7 @@ fn ffmpeg_makes_videos_of_all_frames() {
     }
 }
 
-/// Begins to make a video of frames that are there, and stops.
+/// Starts to make a video of existing frames, and cancels it.
 fn gives_up(frames: &Path, name: &str) {
     let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
     (scene.render.width, scene.render.height) = (48, 48);
@@ -817,7 +817,7 @@ fn no_video_is_made_of_frames_that_another_export_has_put_there() {
     let path = folder.path().join("a.apng");
     let video = Video::of_path(&path).expect("known");
     let made = video.make(&sequence, &path, |count| {
-        // Of the same size, while others are read.
+        // Of the same size, while other frames are being read.
         if count == 3 {
             let other = ["--frames", "7", "--antialias", "none"];
             done(&mut export(folder.path(), &other));
@@ -838,7 +838,7 @@ fn a_video_that_is_not_wanted_any_more_leaves_nothing() {
     }
 }
 
-/// Programs of that name that do not do what they should.
+/// Programs named `ffmpeg` that misbehave.
 #[test]
 #[cfg(unix)]
 fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
@@ -855,7 +855,7 @@ fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
         ("cat >/dev/null\nexit 0", "it wrote nothing"),
         ("exit 0", "it ended before it had all frames"),
         ("printf 'a\\033[2Jb' >&2\nexit 3", "ffmpeg failed:\na [2Jb"),
-        // More than a pipe holds, before it takes frames that are more than a pipe holds as well.
+        // More than a pipe holds, before it reads frames that are more than a pipe holds as well.
         ("seq 100000 >&2\ncat >/dev/null\nexit 3", "99999\n100000"),
     ] {
         let program = folder.path().join("ffmpeg");
@@ -940,7 +940,7 @@ fn a_job_has_a_name_that_farms_take_whatever_the_scene_is_called() {
     }
 }
 
-/// Waits until nothing is exported any more.
+/// Waits until no export is running.
 fn finish(harness: &mut EditorHarness) {
     harness.wait_for("the end of the export", |harness| {
         !harness.window.state().is_exporting()
@@ -948,7 +948,7 @@ fn finish(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Waits until a text is in the window.
+/// Waits until the window shows a text.
 fn see(harness: &mut EditorHarness, text: &str) {
     harness.wait_for(text, |harness| harness.sees(text));
 }
@@ -970,7 +970,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.window.get_by_label("gif").click();
     harness.settle();
     harness.click("Start export");
-    // The scene is edited while it is exported.
+    // Edit the scene during the export.
     for frame in 0..20 {
         harness
             .window
@@ -997,11 +997,11 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
         .window
         .get_by_label_contains("14 frames and frames.gif");
     harness.click("Remove");
-    // With the lights' markers off, the frames that show one are others.
+    // With the lights' markers hidden, the frames that showed one are different.
     see(&mut harness, "replace older files");
     harness.window.get_by_label("Start export").click();
     harness.window.step();
-    // A second click asks for nothing more.
+    // A second click requests nothing more.
     see(&mut harness, "These files are being made");
     harness.window.get_by_label("Start export").click();
     finish(&mut harness);
@@ -1090,7 +1090,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     );
     assert!(harness.window.state().is_exporting());
     wait_until("a frame", || folder.join("rayTrace3.ppm").exists());
-    // With changes, one question is about both.
+    // With unsaved changes, a single question covers both.
     harness.window.key_press(Key::O);
     harness.window.step();
     harness.window.key_press_modifiers(CTRL, Key::Q);
@@ -1102,7 +1102,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     assert!(!harness.window.state().is_asking());
     drop(harness);
 
-    // The next window is on another scene, and makes the frames of this one.
+    // The next window opens another scene, and makes the frames of this one.
     let mut harness = EditorHarness::kept_in(data.path(), "scenes/mirrors.ron".into());
     see(&mut harness, "An export is not finished");
     let before = fs::read_dir(&folder).expect("there").count();
@@ -1121,7 +1121,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
         Sequence::new(scene.into(), None, pattern, Format::Ppm, folder).expect("a sequence")
     };
     assert_eq!(sequence(512).missing().expect("readable").count(), 0);
-    // It has ended: nobody is told of it again.
+    // It has ended, so it is not reported again.
     let harness = EditorHarness::kept_in(data.path(), FLIGHT.into());
     let told = harness.window.query_by_label_contains("interrupted");
     assert!(told.is_none());
@@ -1152,7 +1152,7 @@ fn frames_of_light_hold_what_eight_bits_round() {
         let is_between = |light: &&f32| (**light * 255.0).fract() != 0.0;
         assert!(light.iter().filter(is_between).count() > 100);
     }
-    // What is there as it should be stays.
+    // Valid existing frames stay.
     let said = done(&mut export(
         &light,
         &["--frames", "1-5:2", "--format", "exr"],
@@ -1189,7 +1189,7 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     let said = done(&mut glint(&["convert", demo, "-o", to]));
     assert!(said.contains("povray +I"), "{said}");
     assert_eq!(fs::read_to_string(to).expect("written"), by_window);
-    // Whatever the scene's file is called.
+    // Independent of the name of the scene's file.
     let other = folder.path().join("demo.txt");
     fs::copy(demo, &other).expect("copied");
     fs::remove_file(to).expect("there");
@@ -1226,7 +1226,7 @@ fn an_export_waits_goes_on_and_is_given_up() {
         state(first).is_some_and(|state| state.done.written > 2)
     });
     worker.pause_export(first, true);
-    // While the first waits, the second is done.
+    // While the first is paused, the second is made.
     wait_until("the second ends", || {
         state(second).is_some_and(|state| state.ended == Some(Ok(())))
     });
@@ -1252,7 +1252,7 @@ fn an_export_waits_goes_on_and_is_given_up() {
     wait_until("and is done", || !worker.is_exporting());
     assert!(state(first).is_none() && !worker.is_exporting());
     drop(worker);
-    // What is written stays, whole, and is taken up by the next.
+    // Frames that were written stay complete, and the next export uses them.
     let left = sequence("first", "1-202")
         .missing()
         .expect("readable")
@@ -1260,8 +1260,7 @@ fn an_export_waits_goes_on_and_is_given_up() {
     assert!(left < 202 - still, "{left} left");
 }
 
-/// The template is run by the reference runner, in chunks, and gives the same bytes as the program
-/// alone.
+/// The template is run by the reference runner, in chunks, and gives the same bytes as the program alone.
 #[test]
 #[ignore = "needs openjd-cli from PyPI on the PATH"]
 fn a_farm_makes_the_same_bytes() {
@@ -1288,7 +1287,7 @@ fn a_farm_makes_the_same_bytes() {
     assert!(made == files(&alone));
 }
 
-/// The README's lines, run by a Slurm of one node and by GNU parallel.
+/// The commands of the README, run by Slurm with one node and by GNU parallel.
 #[test]
 #[ignore = "needs Slurm and GNU parallel (Debian packages slurmctld, slurmd, slurm-client, munge, parallel)"]
 fn clusters_make_the_same_bytes_by_the_lines_of_the_readme() {
@@ -1322,7 +1321,7 @@ fn a_job_brings_its_meshes_and_keeps_what_was_there() {
     assert_eq!(kept, "what somebody else made");
     assert!(fs::read(&other).expect("copied") == fs::read(FLIGHT).expect("there"));
 
-    // An older template goes; what is none, or was changed by hand, does not.
+    // An older template is replaced; a file that is none, or that was changed by hand, is kept.
     let backup = folder.path().join("job.yaml.bak");
     assert!(!backup.exists());
     let by_hand = fs::read_to_string(&template).expect("there") + "# for the night\n";
@@ -1370,7 +1369,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
         fs::read_to_string(blocked.join("s.ron")).expect("there"),
         "mine"
     );
-    // A scene comes through a pipe once.
+    // A scene can be read from a pipe only once.
     let piped = folder.path().join("piped.yaml");
     let text = fs::File::open(&scene).expect("there");
     let mut cat = Command::new("cat")
@@ -1384,7 +1383,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     cat.wait().expect("ended");
     let copy = Document::load(&folder.path().join("stdin.ron")).expect("a scene");
     assert_eq!(copy.scene, Document::load(&scene).expect("a scene").scene);
-    // Two others in its place are kept both.
+    // Two other files under its name are both kept.
     let inner = folder.path().join("jobs");
     fs::create_dir(&inner).expect("a folder");
     let template = inner.join("job.yaml");
@@ -1400,7 +1399,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     let kept =
         ["s.ron.bak", "s.ron.bak2"].map(|name| fs::read_to_string(inner.join(name)).expect("kept"));
     assert_eq!(kept, ["one", "another"]);
-    // Every third of a thousand frames is one piece.
+    // A thousand frames, every third one, in a single piece.
     let mut long = Document::load(FLIGHT.as_ref()).expect("a scene");
     long.scene.animation_mut().frames_per_second = 240.0;
     long.save(&scene).expect("saved");
@@ -1446,7 +1445,7 @@ fn no_frame_is_made_without_a_mesh_that_is_missing() {
     }
 }
 
-/// The disk is full in the last bytes of a GIF, which its encoder writes when it is dropped.
+/// The disk is full at the last bytes of a GIF, which its encoder writes when it is dropped.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_video_that_is_cut_off_takes_no_ones_place() {

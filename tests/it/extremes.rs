@@ -1,5 +1,5 @@
-//! The ends of what a scene can hold: a right picture, by the other engine or by itself in milder circumstances, or a
-//! sentence.
+//! The limits of what a scene can hold: the picture is right – judged by the other engine, or by the same scene in
+//! milder circumstances – or an error says why there is none.
 
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ use crate::pictures::{differing, picture};
 use crate::random::Dice;
 use crate::scalar::assert_agreed;
 
-/// The demo so many times as large, and elsewhere.
+/// The demo scaled and moved.
 fn demo(scale: f64, by: DVec3) -> Scene {
     let at = |v: DVec3| v * scale + by;
     let mut scene = Scene::demo();
@@ -67,7 +67,7 @@ fn something_very_far_away_changes_nothing_else() {
         scene.objects.push(Object::new("Far", "sphere 2", far));
         let off = differing(&known, &picture(&scene, &request).0, 1);
         assert!(off <= 3, "{off} pixels with a ball at {place}");
-        // What is said of it is that it is small, at most.
+        // At most, a hint says that it is small.
         let said = hints(&scene).len();
         assert!(said <= 1 + hints(&Scene::demo()).len(), "{said} hints");
     }
@@ -145,7 +145,7 @@ fn hundreds_of_lights_and_any_sharpness_are_shaded_as_by_the_other_engine() {
     }
 }
 
-/// Two mirrors that face each other, and a ball between them.
+/// Two mirrors that face each other, with a ball between them.
 fn hall(limit: u32) -> Scene {
     let mut scene = Scene::demo();
     scene.render.reflection_limit = limit;

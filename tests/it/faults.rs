@@ -1,5 +1,5 @@
-//! What is not the program's fault: it is killed, put to sleep, the disk is full, the folder is somebody else's.
-//! Nothing that was there is lost, and what could not be done is told.
+//! External faults: the program is killed or suspended, the disk is full, the folder belongs to somebody else.
+//! Existing files are not lost, and failures are reported.
 #![cfg(unix)]
 
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ use glint::scene::{Document, Object, Recovery, Scene, Sphere};
 use crate::program::{self, FLIGHT, done, names, run, wait_until};
 use crate::random::Dice;
 
-/// Programs that are killed while they save.
+/// Number of programs that are killed while they save.
 const KILLS: usize = 300;
 
 fn glint(folder: &Path, words: &[&str]) -> Command {
@@ -26,7 +26,7 @@ fn glint(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-/// What a program says that fails.
+/// The error message of a command that fails.
 fn fail(command: &mut Command) -> String {
     let output = run(command);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -34,7 +34,7 @@ fn fail(command: &mut Command) -> String {
     said
 }
 
-/// A mesh file of two parts with so many faces, which become a scene file that holds them.
+/// Writes a mesh file of two parts with this many faces; converted, it gives a scene file that contains them.
 fn write_mesh(path: &Path, faces: usize) {
     let mut text = String::new();
     for face in 0..faces {
@@ -96,7 +96,7 @@ fn whoever_is_killed_while_saving_leaves_the_old_file_or_the_new_one() {
     );
 }
 
-/// Where [`keeps_unsaved_work_until_it_is_killed`] does so.
+/// Environment variable with the folder in which [`keeps_unsaved_work_until_it_is_killed`] works.
 const KEPT_IN: &str = "GLINT_TEST_KEPT_IN";
 
 #[test]
@@ -112,7 +112,7 @@ fn keeps_unsaved_work_until_it_is_killed() {
     }
 }
 
-/// Work after so many steps: the file is the larger, the more there were of the last hundred.
+/// The document after a number of steps; the file grows within each hundred steps.
 fn unsaved(step: usize) -> Document {
     let mut document = Document::of(Scene::empty());
     document.scene.ambient_intensity = 1.0 / step as f64;
@@ -215,7 +215,7 @@ fn a_program_that_sleeps_goes_on_where_it_was() {
     }
 }
 
-/// Whether the system lets this user write into a folder that nobody may write into, as it does the administrator.
+/// Returns whether the system lets this user write into a write-protected folder, as it does the administrator.
 fn is_administrator(folder: &Path) -> bool {
     fs::write(folder.join("try"), "").is_ok_and(|()| fs::remove_file(folder.join("try")).is_ok())
 }
@@ -231,7 +231,7 @@ fn a_folder_that_must_not_be_written_to_is_named_and_left_as_it_was() {
         fs::set_permissions(path, fs::Permissions::from_mode(mode)).expect("set");
     }
     let nobody = is_administrator(&shut).then_some(65534);
-    // The program itself may lie where only its owner may look.
+    // The program itself may be in a folder that only its owner may read.
     let program = folder.path().join("glint");
     fs::copy(env!("CARGO_BIN_EXE_glint"), &program).expect("copied");
     for words in [
@@ -263,7 +263,7 @@ fn a_folder_that_must_not_be_written_to_is_named_and_left_as_it_was() {
     fs::set_permissions(&shut, fs::Permissions::from_mode(0o755)).expect("set");
 }
 
-/// A disk of so many bytes.
+/// A disk of limited size.
 struct Disk(PathBuf);
 
 impl Disk {
@@ -302,7 +302,7 @@ fn a_video_that_a_full_disk_cuts_short_takes_no_ones_place() {
     done(&mut make("1-2", "32"));
     let video = disk.0.join("v.mp4");
     let before = fs::read(&video).expect("there");
-    // Room for a third of the next one is left.
+    // Leave space for a third of the next video.
     let fill = vec![0; 248 << 10];
     fs::write(disk.0.join("fill"), fill).expect("written");
     let said = fail(&mut make("1-50", "100"));
@@ -366,7 +366,7 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
         "nothing has changed"
     );
 
-    // Frames stop with a sentence and go on when there is room.
+    // Frames stop with an error, and go on once there is space.
     let export = [
         "export",
         FLIGHT,

@@ -1,5 +1,5 @@
-//! Single precision with a filter: what rounding may decide is traced again in double precision, and the picture is
-//! that of double precision.
+//! Single precision with a filter: pixels that rounding may affect are traced again in double precision, so that
+//! the picture equals that of double precision.
 
 use glam::DVec3;
 use glint::mesh::{SOLIDS, Triangles};
@@ -15,7 +15,7 @@ use crate::random::{self, Dice};
 
 const WIDTH: u32 = 160;
 const HEIGHT: u32 = 120;
-/// Random scenes of each kind.
+/// Number of random scenes of each kind.
 const SCENES: u64 = 24;
 
 fn with(precision: Precision) -> RenderRequest {
@@ -25,7 +25,8 @@ fn with(precision: Precision) -> RenderRequest {
     }
 }
 
-/// How many pixels of scenes are other than in double precision with single precision alone; with the filter none may be.
+/// Number of pixels that single precision alone traces differently from double precision; with the filter there
+/// must be none.
 fn wrong(scenes: impl Iterator<Item = Scene>) -> usize {
     let mut alone = 0;
     for (number, scene) in scenes.enumerate() {
@@ -46,7 +47,7 @@ fn mirroring(mut scene: Scene) -> Scene {
     scene
 }
 
-/// The scene of a seed with solids in it, flat and smooth, at every angle.
+/// The random scene of a seed with solids added, flat and smooth, at arbitrary angles.
 fn with_solids(seed: u64) -> Scene {
     let mut scene = random::scene(seed);
     let dice = &mut Dice(seed.wrapping_mul(65_537) + 3);
@@ -64,7 +65,7 @@ fn with_solids(seed: u64) -> Scene {
     scene
 }
 
-/// Thousands of facets of rings that see each other, from afar through a long lens.
+/// Rings with thousands of facets that shadow and reflect each other, seen from afar with a narrow field of view.
 fn rings(seed: u64) -> Scene {
     let mut scene = random::scene(seed);
     let dice = &mut Dice(seed.wrapping_mul(31_337) + 9);
@@ -100,7 +101,7 @@ fn rings(seed: u64) -> Scene {
     scene
 }
 
-/// Adds so many things of six packs, which are made of vectors that reach as far as is asked for.
+/// Adds `count` objects with six color packs; `shape` makes each from random vectors of a given extent.
 fn scatter<S: Into<Shape>>(
     mut scene: Scene,
     (count, salt): (usize, u64),
@@ -116,7 +117,7 @@ fn scatter<S: Into<Shape>>(
     scene
 }
 
-/// Many boxes, a few pixels large, in each other's light.
+/// Many boxes, a few pixels large, that shadow each other.
 fn boxes(seed: u64) -> Scene {
     let salt = seed.wrapping_mul(7_919) + 5;
     scatter(random::scene(seed), (60, salt), |vector| Mesh {
@@ -127,7 +128,7 @@ fn boxes(seed: u64) -> Scene {
     })
 }
 
-/// Large boards, as thin as paper, in each other's light and close to the lights.
+/// Large boards, as thin as paper, that shadow each other and are close to the lights.
 fn boards(seed: u64) -> Scene {
     let salt = seed.wrapping_mul(6_007) + 11;
     scatter(random::scene(seed), (12, salt), |vector| Mesh {
@@ -138,7 +139,7 @@ fn boards(seed: u64) -> Scene {
     })
 }
 
-/// Many discs of several packs over a floor that ends at the horizon.
+/// Many discs with several color packs over a floor that ends at the horizon.
 fn discs(seed: u64) -> Scene {
     let salt = seed.wrapping_mul(5_003) + 7;
     let mut scene = scatter(random::with_discs(seed), (30, salt), |vector| Disc {
@@ -154,7 +155,8 @@ fn discs(seed: u64) -> Scene {
     mirroring(scene)
 }
 
-/// Rings, seen ever less from above, whose floor ends at the horizon, far behind them, half of them under a wide sky.
+/// Rings seen at ever flatter angles over a floor that ends at the horizon far behind them; half of the scenes have
+/// a huge sphere as sky.
 fn far_and_wide(seed: u64) -> Scene {
     let mut scene = rings(seed);
     let flatter = 1.0 + seed as f64;
@@ -170,7 +172,7 @@ fn far_and_wide(seed: u64) -> Scene {
     scene
 }
 
-/// A ring of radius 1, with a tube of this radius.
+/// A torus of radius 1 whose tube has this radius.
 fn ring(tube: f64) -> Triangles {
     const AROUND: u32 = 30;
     const ALONG: u32 = 20;
@@ -204,12 +206,12 @@ fn the_filtered_picture_is_that_of_double_precision() {
         boards,
     ];
     let alone = kinds.map(|kind| wrong((0..SCENES).map(kind)));
-    // Single precision alone errs.
+    // Single precision alone gets pixels wrong.
     println!("single precision alone: {alone:?} pixels");
     assert!(alone[3] > 3, "{alone:?}");
 }
 
-/// Hills with a tower in them that reaches far into the sky: the coordinates of the mesh count from the middle of that.
+/// Hills with a very high tower, so that the mesh's coordinates are relative to a centre far above the ground.
 fn hills(seed: u64) -> Scene {
     const SIDE: u32 = 40;
     let dice = &mut Dice(seed.wrapping_mul(9_001) + 13);
@@ -251,7 +253,7 @@ fn hills(seed: u64) -> Scene {
     scene
 }
 
-/// Thirds of pixels are no numbers of either precision, and rays through them other ones in each.
+/// Thirds of pixels are exact in neither precision, so rays through them differ between the two.
 #[test]
 fn neither_grids_nor_meshes_that_count_from_far_away_are_other_than_in_double_precision() {
     for (seed, kind) in (0..4).flat_map(|seed| [(seed, hills as fn(u64) -> Scene), (seed, rings)]) {
@@ -277,7 +279,7 @@ fn neither_grids_nor_meshes_that_count_from_far_away_are_other_than_in_double_pr
     }
 }
 
-/// Scenes of which much is in doubt.
+/// Scenes with many doubtful pixels.
 const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     |seed| mirroring(with_solids(seed)),
     |seed| mirroring(rings(seed)),
@@ -285,9 +287,9 @@ const DOUBTFUL: [fn(u64) -> Scene; 5] = [
     far_and_wide,
     discs,
 ];
-/// Of the first kinds something is in doubt in every picture.
+/// Number of kinds, from the first, of which every picture has doubtful pixels.
 const CROWDED: usize = 2;
-/// With clean edges, too, no pixel of the first kinds is off; of the others one may be, in a scene or two.
+/// Number of kinds, from the first, with no wrong pixel with clean edges; others may have one in a scene or two.
 const CLEAN: usize = 3;
 
 #[test]
@@ -308,7 +310,7 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
     }
 }
 
-/// Walls seen exactly from above, whose sides are those of pixels and of their halves.
+/// Walls seen exactly from above, with their sides on pixel borders and on the middles of pixels.
 fn plan() -> Scene {
     let mut scene = Scene::demo();
     scene.light_visualization = false;
@@ -355,7 +357,7 @@ fn walls_along_the_sides_of_pixels_are_those_of_double_precision() {
     }
 }
 
-/// Found among random scenes; where it was not seen, a pixel was off by 13.
+/// Found among random scenes; before this case was handled, a pixel was off by 13.
 const WIDE_BEHIND_THIN: &str = include_str!("doubtful_scenes/wide_behind_thin.ron");
 
 #[test]
@@ -423,7 +425,7 @@ fn few_objects_need_no_filter_and_little_of_a_mesh_is_traced_again() {
     let mut rings = rings(1);
     let of_rings = share(&rings);
     assert!(of_rings > 0.0 && of_rings < 0.02, "{of_rings}");
-    // A wide sky around them leaves little more in doubt.
+    // A huge sphere around them leaves hardly more pixels in doubt.
     let mut wide = rings.clone();
     let sky = Sphere {
         center: DVec3::ZERO,
@@ -432,7 +434,7 @@ fn few_objects_need_no_filter_and_little_of_a_mesh_is_traced_again() {
     wide.objects.push(Object::new("Sky", "pack 3", sky));
     let under_sky = share(&wide);
     assert!(under_sky < 0.02, "{under_sky}");
-    // What is hidden is not filtered for.
+    // Hidden objects are not filtered.
     for object in rings.objects.iter_mut() {
         object.visible = object.faces() == 0;
     }

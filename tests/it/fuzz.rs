@@ -1,6 +1,6 @@
-//! Every door through which text comes in, with text that is damaged at random: what is let in is whole, and nothing
-//! panics. A short run always; `GLINT_FUZZ=10000000` asks for so many texts at each door, and `GLINT_DOOR=paths` for
-//! one of them alone. Files of meshes have their own in `src/mesh/tests/mutated.rs`: `PROPTEST_CASES=1000000`.
+//! Randomly damaged text through every entry point for text: what is accepted is valid, and nothing panics. A short
+//! run by default; `GLINT_FUZZ=10000000` sets the number of texts per entry point, and `GLINT_DOOR=paths` selects
+//! one of them. Mesh files are fuzzed in `src/mesh/tests/mutated.rs`: `PROPTEST_CASES=1000000`.
 
 use std::panic::catch_unwind;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,17 +18,17 @@ use glint::trace::RenderControl;
 use crate::random::Dice;
 use crate::scenes::files_in;
 
-/// Texts at each door where nobody asks for more.
+/// Number of texts per entry point, unless the environment asks for more.
 const FEW: u64 = 2000;
-/// Scenes with longer texts are left out: most damage to them is damage to numbers.
+/// Scenes with longer texts are left out: most damage to them would hit numbers.
 const LONGEST: usize = 6000;
 
-/// So many keys, objects or lights are enough: more of them only make each text take longer.
+/// Maximum number of keys, objects or lights in a seed; more would only make each text slower.
 const ENOUGH: usize = 4;
 
-/// How many of [`WORDS`] are numbers.
+/// How many of the first [`WORDS`] are numbers.
 const NUMBERS: usize = 18;
-/// What breaks more than random bytes do.
+/// Words that break more than random bytes do.
 const WORDS: [&str; 40] = [
     "1",
     "2.5",
@@ -72,11 +72,11 @@ const WORDS: [&str; 40] = [
     "\u{0}",
 ];
 
-/// A door: its name, texts that it lets in, and what comes in with a text.
+/// An entry point for text: its name, and valid texts to start from.
 struct Door {
     name: &'static str,
     seeds: Vec<String>,
-    /// Whether it is let in.
+    /// Parses a text; returns whether it was accepted.
     enter: fn(&str) -> bool,
 }
 
@@ -84,10 +84,10 @@ fn pick(dice: &mut Dice, count: usize) -> usize {
     (dice.real(0.0, count as f64) as usize).min(count - 1)
 }
 
-/// A text with one piece of damage, or up to six.
+/// Damages a text in one to six places.
 fn damaged(seed: &str, other: &str, dice: &mut Dice) -> String {
     let mut bytes = seed.as_bytes().to_vec();
-    // Half of them have one piece: what has many is seldom let in.
+    // Half of the texts are damaged once: with more damage, they are seldom accepted.
     for _ in 0..=pick(dice, 2) * pick(dice, 6) {
         let at = pick(dice, bytes.len() + 1);
         let end = (at + pick(dice, 40)).min(bytes.len());
@@ -111,7 +111,7 @@ fn damaged(seed: &str, other: &str, dice: &mut Dice) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Puts a word in place of the next number.
+/// Replaces the next number by a word.
 fn number(bytes: &mut Vec<u8>, at: usize, word: &[u8]) {
     let is_number = |byte: &u8| byte.is_ascii_digit() || b".-".contains(byte);
     let Some(start) = bytes[at..].iter().position(is_number).map(|skip| at + skip) else {
@@ -126,7 +126,7 @@ fn number(bytes: &mut Vec<u8>, at: usize, word: &[u8]) {
         .for_each(drop);
 }
 
-/// What is let in passes the check, survives its text, and can be drawn.
+/// An accepted scene passes the check, survives being written and read again, and can be rendered.
 fn enter_scene(text: &str) -> bool {
     let Ok(document) = Document::from_text(text) else {
         return false;
@@ -147,7 +147,7 @@ fn enter_path(text: &str) -> bool {
     let Ok(keys) = from_table(text, &Camera::default()).or(from_text(text)) else {
         return false;
     };
-    // What is let in here is checked as part of the scene that it becomes.
+    // Further checks are made on the scene that the path becomes part of.
     let again = to_text(&keys).expect("a text");
     from_text(&again).is_ok()
 }
@@ -181,7 +181,7 @@ fn enter_words(text: &str) -> bool {
     frames.is_ok() || pattern.is_ok() || sampling.is_ok() || offset.is_ok()
 }
 
-/// The same scene with a few of everything that it has, in which nothing moves but the camera.
+/// The same scene with only a few things of each kind, in which nothing but the camera moves.
 fn small(mut document: Document) -> Document {
     let Scene {
         objects, lights, ..
@@ -221,7 +221,7 @@ fn doors() -> Vec<Door> {
     let bad: Vec<String> = bad.collect();
     let examples = EXAMPLES.iter().map(Example::document);
     let small = examples.clone().map(|example| small(example).to_text());
-    // As many good ones as bad ones: what has one fault already is seldom let in.
+    // As many valid seeds as invalid ones: a text that is already invalid is seldom accepted after damage.
     let small = small.flatten().cycle().take(bad.len());
     let scenes = examples.flat_map(|example| example.to_text());
     let scenes = scenes.filter(|text| text.len() < LONGEST);
@@ -290,7 +290,7 @@ fn no_door_lets_in_what_is_broken_or_breaks_itself() {
                 });
             }
         });
-        // Damage that is never let in tries nothing but the reader.
+        // Damage that is never accepted would test nothing but the parser.
         assert!(
             let_in.load(Ordering::Relaxed) * 200 > texts,
             "{}",

@@ -1,4 +1,4 @@
-//! The window without a display, and hands for it.
+//! The window without a display, and functions to operate it.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use glint::worker::Background;
 
 use crate::PATIENCE;
 
-/// Dialogs that answer from a list; with none left, they do as a desktop without dialogs does.
+/// Dialogs that answer from a list; when it is used up, they behave as on a desktop without dialogs.
 pub struct Scripted(VecDeque<(Ask, Option<PathBuf>)>);
 
 impl Dialogs for Scripted {
@@ -50,7 +50,7 @@ impl egui::DroppedFile for OnDisk {
     }
 }
 
-/// A screen that nobody looks at. The usual one keeps every part of a texture that was ever sent to it.
+/// A renderer that draws nothing. The usual one keeps every part of a texture that was ever sent to it.
 struct Unseen;
 
 impl TestRenderer for Unseen {
@@ -83,7 +83,7 @@ impl EditorHarness {
         Self::asked(|folder| Box::new(Scripted(answers(folder).into())), scene)
     }
 
-    /// A window on a scene, without answers.
+    /// A window on a scene, with no answers.
     pub fn on(scene: Scene) -> Self {
         let header = String::new();
         let text = Document { header, scene }.to_text();
@@ -102,7 +102,7 @@ impl EditorHarness {
         Self::open(folder, dialogs, scene, None)
     }
 
-    /// A window on a scene file, which keeps what is not finished in the folder `data`.
+    /// A window on a scene file, with `data` as the program's data folder.
     pub fn kept_in(data: &Path, scene: PathBuf) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let dialogs = Box::new(Scripted(VecDeque::new()));
@@ -151,7 +151,7 @@ impl EditorHarness {
                 "the picture never came of {:?}",
                 self.editor().to_text()
             );
-            // Each step is a sixtieth of a second to the window: on a busy machine many of them would outlive
+            // The window takes each step for a sixtieth of a second: on a busy machine, many steps would outlast
             // its messages.
             std::thread::sleep((start.elapsed() / 8).max(Duration::from_millis(2)));
             self.window.step();
@@ -159,7 +159,7 @@ impl EditorHarness {
         self.window.step();
     }
 
-    /// Steps until something is so: as fast as time passes, since messages go again.
+    /// Steps until a condition holds; in real time, as messages disappear after a while.
     pub fn wait_for(&mut self, what: &str, is_so: impl Fn(&Self) -> bool) {
         let start = Instant::now();
         while !is_so(self) {
@@ -167,11 +167,11 @@ impl EditorHarness {
             std::thread::sleep(Duration::from_millis(16));
             self.window.step();
         }
-        // What appears is measured in its first frame, and seen in its second.
+        // A new widget is measured in its first frame and visible in its second.
         self.window.step();
     }
 
-    /// Whether a text with these words is in the window.
+    /// Returns whether the window shows a text that contains these words.
     pub fn sees(&self, words: &str) -> bool {
         let mut seen = self.window.query_all_by_label_contains(words);
         seen.next().is_some()
@@ -181,7 +181,7 @@ impl EditorHarness {
         self.window.state().editor()
     }
 
-    /// The names of what is selected.
+    /// The names of the selected items.
     pub fn selected(&self) -> Vec<&str> {
         let items = self.editor().selection().items().iter();
         items.filter_map(|item| item.name(self.scene())).collect()
@@ -191,7 +191,7 @@ impl EditorHarness {
         self.editor().scene()
     }
 
-    /// Where the picture is in the window.
+    /// Rectangle of the picture in the window.
     pub fn view(&self) -> egui::Rect {
         let mut pictures = self.window.get_all_by_role(Role::Image);
         pictures.next().expect("a picture").rect()
@@ -210,7 +210,7 @@ impl EditorHarness {
         self.drop_files([path]);
     }
 
-    /// Drops several at once.
+    /// Drops several files at once.
     pub fn drop_files(&mut self, paths: impl IntoIterator<Item = PathBuf>) {
         let dropped = &mut self.window.input_mut().dropped_files;
         for path in paths {
@@ -229,7 +229,7 @@ impl EditorHarness {
         self.settle();
     }
 
-    /// Clicks the button of this name, where other things have the same.
+    /// Clicks the button with this name, where other widgets have the same name.
     pub fn press_button(&mut self, name: &str) {
         self.window
             .get_by_role_and_label(Role::Button, name)
@@ -237,13 +237,13 @@ impl EditorHarness {
         self.settle();
     }
 
-    /// Opens a menu and chooses an entry of it.
+    /// Opens a menu and chooses one of its entries.
     pub fn choose(&mut self, menu: &str, entry: &str) {
         self.press_button(menu);
         self.click(entry);
     }
 
-    /// Unfolds a choice in a panel.
+    /// Opens a combo box in a panel.
     pub fn unfold(&mut self, choice: &str) {
         self.window
             .get_by_role_and_label(Role::ComboBox, choice)
@@ -251,7 +251,7 @@ impl EditorHarness {
         self.settle();
     }
 
-    /// Types a number over the one in a field.
+    /// Replaces the number in a field by typing.
     pub fn type_into(&mut self, field: &str, text: &str) {
         self.window
             .get_by_role_and_label(Role::SpinButton, field)
@@ -262,8 +262,8 @@ impl EditorHarness {
         self.press(Modifiers::NONE, Key::Enter);
     }
 
-    /// Drags a number, looks at what that has done, and gives it up with Escape: where the pointer was, whose button
-    /// stays down.
+    /// Drags a number, calls `meanwhile`, and cancels the drag with Escape; the button stays down. Returns the
+    /// pointer's position.
     pub fn give_up_dragging(&mut self, field: &str, meanwhile: impl FnOnce(&Self)) -> Pos2 {
         let field = self.window.get_by_role_and_label(Role::SpinButton, field);
         let start = field.rect().center();
@@ -281,7 +281,7 @@ impl EditorHarness {
         start
     }
 
-    /// Types a name over the one in a field.
+    /// Replaces the text in a field by typing.
     pub fn type_name(&mut self, field: &str, text: &str) {
         self.window
             .get_by_role_and_label(Role::TextInput, field)
@@ -293,14 +293,14 @@ impl EditorHarness {
         self.press(Modifiers::NONE, Key::Enter);
     }
 
-    /// Double-clicks a label, which brings its default back.
+    /// Double-clicks a label, which resets its field to the default.
     pub fn double_click(&mut self, label: &str) {
         let at = self
             .window
             .get_by_role_and_label(Role::Label, label)
             .rect()
             .center();
-        // Long enough after any other click, with which it would count as three.
+        // Long enough after any other click, which would otherwise make it a triple click.
         (0..60).for_each(|_| self.window.step());
         for _ in 0..2 {
             self.window.drag_at(at);
@@ -336,7 +336,7 @@ pub fn radius(scene: &Scene, object: usize) -> f64 {
     }
 }
 
-/// Answers what the editor wants to know of its recorded flight, as the window does.
+/// Answers the editor's question about its recorded flight, as the window does.
 pub fn survey_flight(editor: &mut Editor) {
     while let Some(take) = editor.wanted_survey().cloned() {
         let mut seen = Vec::new();

@@ -1,4 +1,4 @@
-//! The picture: the same bytes however it is made, and the model's rules on analytic scenes.
+//! The picture: the same bytes whatever way it is computed, and the rules of the model on analytic scenes.
 
 use std::collections::HashSet;
 
@@ -21,7 +21,7 @@ fn small(scene: &Scene) -> Image {
 
 const SAMPLINGS: [Sampling; 3] = [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE];
 
-/// The colour in the middle of a picture.
+/// The colour at the centre of a picture.
 fn middle(scene: &Scene) -> [u8; 3] {
     let image = picture(scene, &RenderRequest::sized(31, 31)).0;
     let [r, g, b, _] = image.pixels[15 * 31 + 15];
@@ -83,7 +83,7 @@ fn any_lanes_give_the_same_bytes() {
     }
 }
 
-/// A box before a disc that is seen nearly from its edge: rays that end on the box come close to where the disc begins.
+/// A box in front of a disc seen nearly edge-on: rays that hit the box pass close to the start of the disc.
 const BEFORE_A_DISC: &str = r#"
     camera: Camera(position: (93.2379, 21.8223, -139.607), look_at: (-108.221, -11.442, 135.074), up: (0, 1, 0), projection_distance: 1.284),
     objects: [
@@ -97,7 +97,8 @@ const BEFORE_A_DISC: &str = r#"
         Light(name: "Three", position: (49.4944, 182.114, -36.6859), intensity: 0.33),
     ],"#;
 
-/// Boxes, a ball and a floor that mirror: rays that a ball has spread look at boxes as a whole, and others into them.
+/// Boxes, and a mirroring ball and floor: rays spread by the ball treat boxes as a whole, while others look into
+/// them.
 const BEFORE_A_BALL: &str = r#"
     camera: Camera(position: (-130, 25.39, 120), look_at: (130, -33.44, -120), up: (0, 1, 0), projection_distance: 1.3),
     objects: [
@@ -160,7 +161,7 @@ fn nested_passes_end_in_the_same_bytes_with_no_ray_more() {
     assert_eq!(traced, rays);
 }
 
-/// Whether a pixel shows something that the other picture has right beside it.
+/// Returns whether a pixel is within the range of what the other picture shows there and right beside it.
 fn is_on_edge(pixel: [u8; 4], x: usize, y: usize, other: &Image) -> bool {
     let beside = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
     (0..3).all(|channel| {
@@ -189,7 +190,7 @@ fn single_and_double_precision_differ_on_edges_only() {
     }
 }
 
-/// Pixels differ by more than 1 of 255 on edges only, and at most one of 2000 does.
+/// Asserts that pixels differ by more than 1 of 255 only at edges, and at most one in 2000.
 pub fn assert_same_but_for_edges(one: &Image, other: &Image, what: &str) {
     let mut differ = 0;
     for (index, (a, b)) in one.pixels.iter().zip(&other.pixels).enumerate() {
@@ -230,7 +231,7 @@ fn the_classic_formulas_show_the_same_where_they_work() {
     assert!(differ <= 100, "{differ} of 19200");
 }
 
-/// Every formula in the lists draws the demo, where all of them work.
+/// Every formula renders the demo correctly, a scene on which all of them work.
 #[test]
 fn every_formula_draws_the_demo() {
     let scene = Scene::demo();
@@ -248,7 +249,7 @@ fn every_formula_draws_the_demo() {
     }
 }
 
-/// The default formulas with one of them replaced, for all that there are.
+/// The default formulas with one of them replaced, for each alternative.
 fn changed_one_at_a_time() -> Vec<(String, Methods)> {
     let default = Methods::default();
     let spheres = SphereMethod::ALL[1..].iter().map(|way| {
@@ -382,7 +383,7 @@ fn no_scale_and_no_place_changes_the_picture() {
     );
 }
 
-/// A white ball of radius 1 in front of a camera that looks along -z, lit from the camera.
+/// A white sphere of radius 1 in front of a camera that looks along -z, lit from the camera.
 fn ball() -> Scene {
     let mut scene = Scene::empty();
     scene.camera.position = DVec3::new(0.0, 0.0, 10.0);
@@ -408,14 +409,14 @@ fn ball() -> Scene {
 
 #[test]
 fn ambient_diffuse_and_specular_add_up_as_written() {
-    // Straight on, n·l = n·h = 1: 0.5·(40, 80, 120) + 0.5·(100, 50, 0) + 0.5·(0, 0, 60).
+    // At normal incidence, n·l = n·h = 1: 0.5·(40, 80, 120) + 0.5·(100, 50, 0) + 0.5·(0, 0, 60).
     assert_eq!(middle(&ball()), [70, 65, 90]);
 }
 
 #[test]
 fn a_blocked_light_leaves_ambient_and_a_marker_blocks_nothing() {
     let mut scene = ball();
-    // The marker stands between the ball and the camera, but its light is behind it.
+    // The marker is between the ball and the camera, with its light inside.
     scene.lights[0].position = DVec3::new(0.0, 0.0, 5.0);
     scene.light_visualization = false;
     assert_eq!(middle(&scene), [70, 65, 90], "hidden markers are not there");
@@ -452,7 +453,7 @@ fn a_mirror_adds_the_sum_of_intensities_even_in_shadow() {
     scene.background = DVec3::new(200.0, 0.0, 0.0);
     scene.packs_mut()["pack 1"].reflective = true;
     scene.packs_mut()["pack 1"].specular = DVec3::new(255.0, 255.0, 255.0);
-    // Behind the ball: no diffuse, no highlight, but the mirror stays: 0.5·ambient + 0.5·200.
+    // Behind the ball: no diffuse light, no highlight, but the reflection stays: 0.5·ambient + 0.5·200.
     scene.lights[0].position = DVec3::new(0.0, 0.0, -50.0);
     scene.light_visualization = false;
     assert_eq!(middle(&scene), [120, 40, 60]);
@@ -482,8 +483,8 @@ fn a_camera_inside_a_ball_sees_its_lit_wall() {
 
 #[test]
 fn what_is_left_out_would_not_have_shown() {
-    // Any formula but the default ones turns all culling off, so that its failures show. The classic
-    // triangle is such a one, and differs by itself on a few pixels along edges.
+    // Any formula but the default ones disables all culling, so that its failures show. The classic triangle is
+    // such a formula, and differs by itself on a few pixels along edges.
     for scene in (0..8).map(|n| random::scene(2 * n)).chain([Scene::demo()]) {
         let mut scene = scene;
         scene.lights[0].position.y = -300.0;

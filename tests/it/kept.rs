@@ -1,5 +1,5 @@
-//! What is kept from picture to picture for the next one changes none of them; nor does the tree that most of it is
-//! kept for.
+//! What is cached from one picture to the next changes no picture; neither does the tree that most of the cache is
+//! for.
 
 use glam::DVec3;
 use glint::image::{Image, render, render_into};
@@ -12,7 +12,7 @@ use glint::trace::RenderControl;
 
 use crate::random::Dice;
 
-/// Balls: enough for a tree, and with so few pixels each that hits are put in order.
+/// Number of balls: enough for a tree, and with so few pixels each that hits are sorted.
 const BALLS: usize = 600;
 
 type Change = fn(&mut Scene, &mut Dice);
@@ -22,7 +22,7 @@ fn place(dice: &mut Dice) -> DVec3 {
     DVec3::new(coordinate(), coordinate() + 45.0, coordinate())
 }
 
-/// Balls of several packs, a solid mesh and a floor under two lights.
+/// Balls with several color packs, a solid mesh and a floor, under two lights.
 fn crowd(dice: &mut Dice) -> Scene {
     let mut scene = Scene::empty();
     scene.camera = Camera {

@@ -37,6 +37,6 @@ mod ui;
 mod window;
 mod worker;
 
-/// How long a test waits for what shall happen. Minutes may pass on a slow machine that is busy with other tests; only
-/// what hangs is to fail.
+/// How long a test waits for something to happen. On a slow machine that is busy with other tests, this may take
+/// minutes; only what hangs is to fail.
 const PATIENCE: Duration = Duration::from_mins(10);

@@ -1,4 +1,5 @@
-//! Eyes, windows of parallel rays and lights on faces of meshes: no speckle, and the same in any precision.
+//! Cameras, view windows of parallel rays, and lights on faces of meshes: no speckle, and the same in any
+//! precision.
 
 use glam::{DMat3, DVec3};
 use glint::image::Image;
@@ -12,7 +13,7 @@ use crate::image_model::assert_same_but_for_edges;
 
 const ALL: usize = (SIDE * SIDE) as usize;
 
-/// Of no sheet that is turned like this, any face has a number of few digits.
+/// A rotation for which no face of a sheet has coordinates with few digits.
 const TURNED: DVec3 = DVec3::new(11.0, 23.0, 5.0);
 const HERE: DVec3 = DVec3::new(0.3, 1.7, 0.2);
 
@@ -44,7 +45,7 @@ fn an_eye_on_a_face_does_not_see_it() {
         assert_eq!(blue, 0, "{x}, {z}: the sheet itself");
         assert!(red > 0);
     }
-    // A little above it, it is all that is seen.
+    // From a little above it, nothing else is seen.
     let above = with_camera(scene([floor(), leaning()]), |camera| {
         camera.position = HERE + turn() * DVec3::new(0.4, 1e-4, 0.1);
         camera.look_at = turn() * DVec3::new(0.1, -1.0, -0.2);
@@ -69,7 +70,7 @@ fn an_eye_on_a_box_sees_its_other_sides_from_within() {
 
 #[test]
 fn from_within_a_solid_the_floor_is_seen_on_which_it_stands() {
-    // A house around a smaller one, and the floor of both.
+    // A house around the camera, which stands on the floor.
     let house = block(DVec3::new(3.0, 2.0, 3.0), (DVec3::Y * 2.0, DVec3::ZERO));
     for position in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-0.5, 2.5, 0.5)] {
         let within = with_camera(scene([floor(), house.clone()]), |camera| {
@@ -84,7 +85,7 @@ fn from_within_a_solid_the_floor_is_seen_on_which_it_stands() {
 #[test]
 fn an_eye_on_a_slab_sees_the_floor_under_it() {
     let slab = block(DVec3::new(3.0, 0.15, 3.0), (DVec3::Y * 0.15, DVec3::ZERO));
-    // On its top, and a rounding within.
+    // On the top of the slab, and inside it by a rounding error.
     for height in [0.3, 0.3 - 5e-8] {
         let on = with_camera(scene([floor(), slab.clone()]), |camera| {
             camera.position = DVec3::new(0.3, height, 0.2);
@@ -98,7 +99,7 @@ fn an_eye_on_a_slab_sees_the_floor_under_it() {
 #[test]
 fn parallel_rays_go_on_from_the_face_that_their_window_lies_in() {
     let along = turn() * -DVec3::Y;
-    // The middle of the window need not be on the sheet.
+    // The centre of the view window need not be on the sheet.
     for beside in [0.0, 3.0] {
         let window = with_camera(scene([floor(), leaning()]), |camera| {
             camera.position = HERE + turn() * DVec3::X * beside;
@@ -124,7 +125,7 @@ fn a_face_casts_no_shadow_from_a_light_on_it_and_is_not_lit() {
         let lit = steady_mesh(&hung, &what);
         let automatic = at(&hung, Precision::Auto);
         assert_same_but_for_edges(&automatic, &lit, &what);
-        // As if the sheet were not there, but for where it is seen.
+        // As if the sheet were absent, except where it is visible.
         let mut alone = hung.clone();
         alone.objects.remove(1);
         let alone = at(&alone, Precision::Double);
@@ -138,7 +139,7 @@ fn a_face_casts_no_shadow_from_a_light_on_it_and_is_not_lit() {
 
 #[test]
 fn a_lamp_a_rounding_below_the_ceiling_lights_the_room() {
-    // Files of meshes have heights in single precision, people do not.
+    // Mesh files store heights in single precision, unlike scene files.
     let height = f64::from(2.7_f32);
     let ceiling = sheet(1, 8.0, (DVec3::Y * height, DVec3::ZERO));
     let hung = DVec3::new(3.0, height - 0.5, -3.0);
@@ -157,7 +158,7 @@ fn a_lamp_a_rounding_below_the_ceiling_lights_the_room() {
 
 #[test]
 fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
-    // Red and blue rugs by turns, all listed before their red floor or all behind it.
+    // Alternately red and blue rugs, all listed before their red floor or all after it.
     let rug = |place: u32, height: f64| -> Shape {
         let (x, z) = (f64::from(place % 20), f64::from(place / 20));
         let center = DVec3::new(x * 0.5 - 5.0, height, z * 0.5 - 6.0);
@@ -179,7 +180,7 @@ fn of_hundreds_of_things_in_a_surface_the_first_is_seen() {
         let of_all = scene(before.chain([floor()]).chain(behind.into_iter().flatten()));
         let picture = steady(&of_all, "rugs");
         if is_first {
-            // As if they lay a little over it.
+            // As if they lay a little above it.
             let lifted = (0..count).map(|place| rug(place, 1e-4));
             let lifted = scene(lifted.chain([floor()]));
             assert_same_but_for_edges(&picture, &at(&lifted, Precision::Double), "lifted");
@@ -198,7 +199,7 @@ fn a_light_in_the_plane_of_a_face_does_not_light_it_wherever_that_is() {
             camera.position = there + turn() * DVec3::new(0.5, 4.0, 1.0);
             camera.look_at = turn() * DVec3::new(-0.1, -1.0, -0.2);
         });
-        // Beside it, so that it is not in its box.
+        // Beside the sheet, outside its bounding box.
         let on = there + turn() * DVec3::new(2.5, 0.0, 0.3);
         lit.lights = [lamp(on.x, on.y, on.z)].into_iter().collect();
         let what = format!("a lamp beside a sheet {offset} away");
@@ -244,7 +245,7 @@ fn what_is_just_above_an_eye_on_a_face_is_seen() {
 
 #[test]
 fn what_is_smooth_and_what_is_flat_in_one_place_do_not_look_alike() {
-    // The sides of the boxes that are seen lie in each other.
+    // The visible sides of the boxes coincide.
     let smooth = |wide: f64| {
         let mut shape = block(DVec3::new(wide, 1.0, 1.0), (HERE, DVec3::Z * 5.0));
         if let Shape::Mesh(mesh) = &mut shape {

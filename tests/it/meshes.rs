@@ -1,4 +1,4 @@
-//! Meshes: pictures of them, and the tree that many things stand in.
+//! Rendering of meshes, and the tree that is used for many objects.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ use glint::scene::{
 use crate::pictures::{differing, picture};
 use crate::random;
 
-/// A ball with bumps around the origin, closed, of about so many triangles.
+/// A closed bumpy ball around the origin, of about this many triangles.
 fn bumpy(triangles: f64) -> Triangles {
     let rings = (triangles / 4.0).sqrt() as u32;
     let columns = 2 * rings;
@@ -44,7 +44,7 @@ fn bumpy(triangles: f64) -> Triangles {
         for column in 0..columns {
             let (a, b) = (number(ring, column), number(ring, column + 1));
             let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
-            // Clockwise seen from outside.
+            // Clockwise as seen from outside.
             if ring > 0 {
                 faces.push([a, c, b]);
             }
@@ -56,7 +56,7 @@ fn bumpy(triangles: f64) -> Triangles {
     Triangles::new(points, faces).expect("a mesh")
 }
 
-/// Joined or pasted, they would be in a scene that could be neither saved nor read.
+/// Joining or pasting more would make a scene that could be neither saved nor read.
 #[test]
 fn no_edit_makes_more_triangles_than_a_file_has_room_for() {
     let mesh = Mesh::of(bumpy(20_000.0));
@@ -72,11 +72,11 @@ fn no_edit_makes_more_triangles_than_a_file_has_room_for() {
     let refused = check_edit(&many, &few).expect_err("too many");
     assert!(refused.sentence.contains("256 MiB"), "{}", refused.sentence);
     assert!(check_edit(&more, &many).is_err());
-    // The way back is open.
+    // An edit that reduces the number is allowed.
     assert_eq!(check_edit(&many, &more), Ok(()));
 }
 
-/// The demo with two meshes, one of them twice, turned and squeezed.
+/// The demo with two meshes, one of them used twice, rotated and scaled.
 fn exhibition() -> Scene {
     let mut scene = Scene::demo();
     let ball = Mesh::of(bumpy(700.0));
@@ -110,7 +110,7 @@ fn exhibition() -> Scene {
     scene
 }
 
-/// The same with every mesh taken apart.
+/// The same scene with every mesh separated into triangles.
 fn apart(scene: &Scene) -> Scene {
     let mut apart = scene.clone();
     let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));
@@ -140,8 +140,8 @@ fn a_tree_changes_no_bit_and_no_ray() {
             mesh.smooth = 70.0;
         }
     }
-    // How many rays more or fewer with clean edges, in parts: a list also counts as near what is thin beside the way
-    // behind a ray, and a tree takes what is in a box half a pixel large for one thing.
+    // Allowed relative difference of the number of rays with clean edges: a list also considers thin things beside
+    // a ray behind its hit, and a tree treats the content of a box of half a pixel as one thing.
     let scenes = [
         (exhibition(), 0.0),
         (apart(&exhibition()), 0.25),
@@ -266,7 +266,7 @@ fn nobody_looks_out_of_a_closed_mesh() {
 
 #[test]
 fn a_closed_mesh_in_the_light_has_no_dark_specks() {
-    // Seen from the light, everything that is seen is lit.
+    // Seen from the light, everything visible is lit.
     let mut scene = Scene::empty();
     scene.ambient_intensity = 0.0;
     scene.light_visualization = false;
@@ -287,7 +287,7 @@ fn a_closed_mesh_in_the_light_has_no_dark_specks() {
             ..RenderRequest::sized(500, 500)
         };
         let (image, _) = picture(&scene, &wanted);
-        // At the rim the light only grazes it.
+        // At the contour, the light is at grazing incidence.
         let is_rim = |at: usize| {
             let around = [1, 499, 500, 501]
                 .into_iter()
@@ -301,7 +301,7 @@ fn a_closed_mesh_in_the_light_has_no_dark_specks() {
 
 #[test]
 fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
-    // A rod of half a pixel, closed, in many faces, and a ball of as many.
+    // A closed rod half a pixel wide, of many faces, and a ball of as many.
     let mut scene = Scene::demo();
     let rod = |width: f64| {
         let ring = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
@@ -352,7 +352,7 @@ fn what_is_thin_in_a_mesh_is_found_and_what_is_thick_is_left_alone() {
     assert!(ball < 300_000, "{ball}");
 }
 
-/// A ball that is lit from one side over a floor, as it is made of `shape`.
+/// A ball over a floor, lit from one side and made of `shape`.
 fn lit_ball(shape: impl Into<Shape>, is_mirror: bool) -> Scene {
     let mut scene = Scene::demo();
     scene
@@ -434,7 +434,7 @@ fn a_mesh_turns_along_its_track() {
 #[test]
 fn how_long_meshes_become_is_known_before_they_are_written() {
     let ball = bumpy(1000.0);
-    // Coordinates of few digits, and of all.
+    // Coordinates with few digits, and with all digits.
     let short = |point: &DVec3| point.round();
     let long = |point: &DVec3| *point * 1e6 / 3.0;
     for change in [&short as &dyn Fn(&DVec3) -> DVec3, &long] {

@@ -1,5 +1,5 @@
-//! No more than the scene needs: each rule of the plan leaves the picture as it is, spares what it
-//! says, and stops where it must.
+//! No more than the scene needs: each rule of the plan leaves the picture unchanged, saves what it claims, and does
+//! not apply where it must not.
 
 use glam::DVec3;
 use glint::image::{Image, render};
@@ -20,14 +20,14 @@ fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
     picture(scene, &wanted)
 }
 
-/// What the plan says of one rule.
+/// What the plan says about a rule.
 fn said(scene: &Scene, rule: &str) -> String {
     let needs = needs(scene, &RenderRequest::still(scene));
     let need = needs.into_iter().find(|need| need.rule == rule);
     need.expect("a known rule").what
 }
 
-/// The demo with a change.
+/// The demo with a change applied.
 fn demo(change: impl Fn(&mut Scene)) -> Scene {
     let mut scene = Scene::demo();
     change(&mut scene);
@@ -64,8 +64,8 @@ fn what_is_left_out_is_not_missed() {
     }
 }
 
-/// Every ray meets what it would meet if every primitive were tested for it: byte for byte, ray for ray,
-/// with every sampling, where smoothing also looks beside its rays.
+/// With culling, every ray hits what it would hit if every primitive were tested: byte for byte, ray for ray, with
+/// every sampling, even where adaptive sampling looks beside its rays.
 #[test]
 fn what_is_culled_is_not_missed() {
     let mut many = Scene::demo();
@@ -192,16 +192,16 @@ fn the_tree_begins_where_a_list_is_too_long() {
         plan.geometry.is_some()
     };
     let (plain, smooth) = (Sampling::Centres, Sampling::ADAPTIVE);
-    // However large the picture is, and however small.
+    // Independent of the size of the picture.
     for sampling in [plain, smooth] {
         assert!(!crowd(384, 0, sampling, 2000) && crowd(385, 0, sampling, 2000));
         assert!(!crowd(0, 128, sampling, 2000) && crowd(0, 129, sampling, 2000));
         assert!(!crowd(32, 0, sampling, 64) && crowd(33, 0, sampling, 64));
     }
-    // 200 objects in between: 2,000 pixels each, or 500 with clean edges.
+    // With 200 objects, it depends on the size: 2,000 pixels per object, or 500 with clean edges.
     assert!(crowd(200, 0, plain, 632) && !crowd(200, 0, plain, 633));
     assert!(crowd(200, 0, smooth, 316) && !crowd(200, 0, smooth, 317));
-    // Side by side they are a row; a thinner crowd is one that fills a space.
+    // So far the objects were in a row; this crowd fills a volume.
     let space = |side: f64| {
         let mut scene = Scene::empty();
         for n in 0..64 {

@@ -1,10 +1,10 @@
-//! Where methods fail: the robust one holds, the weak one beside it is shown to fail, so that each
-//! check can. Every row runs with few tries in `cargo test` and with all of them in CI.
+//! Numerical limits: where weaker methods fail, the robust ones hold. Each check shows a weaker method to fail,
+//! which proves that the check can fail. Every row runs with few tries in `cargo test` and with all of them in CI.
 //!
-//! Rows that need the inside of a kernel are tested beside it: refined hits and planets in
+//! Rows that need the internals of a kernel are tested beside it: refined hits and planets in
 //! `primitive/sphere.rs`, leaks in `primitive/triangle`, grazing planes in `primitive/plane.rs`, highlights in
-//! `simd/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at
-//! every scale and place, of single shapes and of meshes, are maps of the lab.
+//! `simd/highlight.rs`, mouse moves in `editor/fly.rs`, paths in `animate/tests`; shadow rays at every scale and
+//! position, for single shapes and for meshes, are stability maps of the lab.
 
 use glam::DVec3;
 use glint::image::{Image, render};
@@ -19,7 +19,7 @@ use glint::trace::RenderControl;
 
 use crate::pictures::differing;
 
-/// The t > 0 at which the ray meets the sphere; infinity if it does not.
+/// The t > 0 at which the ray hits the sphere; infinity if it misses.
 fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &PackedSphere<R>) -> R {
     let methods = Methods {
         sphere: method,
@@ -28,7 +28,7 @@ fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &PackedSpher
     sphere.meet(ray, &methods)
 }
 
-/// A row: its name, and its check with so many tries per case.
+/// A row: its name, and its check, which takes the number of tries per case.
 type Row = (&'static str, fn(u32));
 
 const ROWS: &[Row] = &[
@@ -65,7 +65,7 @@ fn every_row_holds_for_all_tries() {
 
 const U: f64 = 5.960_464_477_539_063e-8;
 
-/// Numbers without a pattern, the same every time: Weyl's sequence.
+/// Deterministic, evenly distributed numbers: Weyl's sequence.
 fn share(n: u32, stream: u32) -> f64 {
     let speeds = [
         0.754_877_666_246_693,
@@ -76,7 +76,7 @@ fn share(n: u32, stream: u32) -> f64 {
     (f64::from(n + 1) * speed).fract()
 }
 
-/// A ray from `ratio` radii away past a unit ball at `miss` radii from its middle.
+/// A ray from a distance of `ratio` radii that passes a unit sphere at `miss` radii from its centre.
 fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, PackedSphere<R>) {
     let (a, b) = (share(n, 0) * std::f64::consts::TAU, share(n, 1) * 3.0 - 1.5);
     let towards = DVec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
@@ -95,7 +95,7 @@ fn aimed<R: Real>(n: u32, ratio: f64, miss: f64) -> (Ray<R>, PackedSphere<R>) {
     (ray, sphere)
 }
 
-/// The exact way to the ball of the rounded numbers.
+/// The exact distance to the sphere, computed from the rounded inputs.
 fn truth(ray: &Ray<f32>, sphere: &PackedSphere<f32>) -> f64 {
     let (c, d) = (sphere.center.to_dvec3(), ray.direction.to_dvec3());
     let d = d.try_normalize().expect("a direction");
@@ -120,7 +120,7 @@ fn far_spheres(tries: u32) {
             (0..tries).map(error).collect::<Vec<f64>>()
         };
         let stable = errors(SphereMethod::Stable);
-        // A miss is off by infinity: it is counted here too.
+        // A miss has an infinite error, so it is counted here, too.
         let misses = stable.iter().filter(|error| !error.is_finite()).count();
         assert_eq!(misses, 0, "missed at {ratio} radii");
         let worst = quantile(stable, 0.999);
@@ -150,7 +150,7 @@ fn far_spheres_in_double(tries: u32) {
             let (ray, sphere) = aimed::<f64>(n, ratio, 0.9 * share(n, 3));
             let t = meet_sphere(SphereMethod::Stable, &ray, &sphere);
             let off = (ray.direction * t - sphere.center).length() - 1.0;
-            // Along the ray it is off by at most 1 / cos of what it is off the surface.
+            // The error along the ray is at most 1 / cos times the error perpendicular to the surface.
             assert!(off.abs() <= 4e-7, "{off:e} at {ratio} radii");
         }
     }
@@ -164,7 +164,7 @@ fn far_spheres_in_double(tries: u32) {
     );
 }
 
-/// The single-precision kernel cannot; the plan sees that and takes double precision.
+/// The single-precision kernel is not accurate enough; the plan recognizes that and uses double precision.
 fn low_over_a_planet(tries: u32) {
     for height in [1e-1, 1e-3, 1e-5, 1e-7] {
         let errors = |is_double: bool| {
@@ -172,7 +172,7 @@ fn low_over_a_planet(tries: u32) {
                 let down = DVec3::new(share(n, 0) - 0.5, -1.0, share(n, 1) - 0.5);
                 let down = Vec3::<f32>::from_dvec3(down.try_normalize().expect("a direction"));
                 let y = 1.0 + height;
-                // Rounded to single precision first: both kernels get the same numbers.
+                // Rounded to single precision first, so that both kernels get the same numbers.
                 let (y, d) = (
                     f64::from(y as f32),
                     down.to_dvec3().try_normalize().expect("unit"),
@@ -229,7 +229,7 @@ fn object(name: &str, center: DVec3, radius: f64) -> Object {
     Object::new(name, "pack 1", Sphere { center, radius })
 }
 
-/// A picture of one sample per pixel.
+/// A picture with one sample per pixel.
 fn plain(scene: &Scene, request: RenderRequest) -> Image {
     let picture = RenderRequest {
         sampling: Sampling::Centres,
@@ -253,7 +253,7 @@ fn unnormalised_cameras(_: u32) {
             .iter()
             .zip(&there.pixels)
             .filter(|(a, b)| a != b);
-        // Powers of two change no digit; the others round once more.
+        // Powers of two are exact; other factors cause one more rounding.
         let allowed = if scale == 0.5 { 0 } else { 2 };
         assert!(differ.count() <= allowed, "scaled by {scale}");
     }
@@ -266,7 +266,7 @@ fn unnormalised_cameras(_: u32) {
     }
 }
 
-/// A wall of axis-aligned triangles, looked at through pixel centres that lie on its edges.
+/// A wall of axis-aligned triangles, viewed so that pixel centres lie on their edges.
 fn flat_trees(_: u32) {
     for away in [0.0, 1e4, 1e6] {
         let corner = |x: u32, y: u32| DVec3::new(f64::from(x) + away, f64::from(y), -away);
@@ -310,8 +310,7 @@ fn flat_trees(_: u32) {
     }
 }
 
-/// The ground right behind a card that stands on it is in its shadow: the gap is less than a
-/// hundred-thousandth of the card.
+/// The ground right behind an upright card is in its shadow: the gap is less than a hundred-thousandth of the card.
 fn contact_shadows(_: u32) {
     let lit = |scale: f64, offset: RayOffset| {
         let mut scene = Scene::empty();
@@ -366,7 +365,7 @@ fn contact_shadows(_: u32) {
     );
 }
 
-/// A camera in a ball: a light inside shines on all of the wall, one outside on none of it.
+/// A camera inside a sphere: a light inside lights all of the wall, one outside lights none of it.
 fn hollow_balls(_: u32) {
     for radius in [1e-4, 1.0, 1e6] {
         for away in [0.0, 1e4] {
@@ -432,18 +431,18 @@ fn degenerate_shading(_: u32) {
             assert_eq!(at(-20.0), [0, 0, 0, 255], "behind, {exponent}");
             assert_eq!(at(0.999_999), [0, 0, 0, 255], "just below, {exponent}");
         }
-        // Flat is flat: wherever the light is, if only it shines on the point.
+        // With exponent 0 the shade is flat, wherever the light is, provided it reaches the point.
         for x in [0.0, 5.0, 500.0] {
             let flat = shaded(pack(0.0), DVec3::new(x, 0.0, 20.0), precision);
             assert_eq!(flat, [255; 4], "exponent 0 from {x}");
         }
-        // The light opposite to the eye, on the horizon of what is seen: no highlight, no NaN.
+        // The light is opposite to the eye, on the horizon of the visible point: no highlight, and no NaN.
         let aside = shaded(pack(16.0), DVec3::new(1e12, 0.0, 1.0), precision);
         assert_eq!(aside, [0, 0, 0, 255]);
     }
 }
 
-/// Between two mirrors, single precision sees what double precision sees in the last image too.
+/// Between two mirrors, single precision shows the same as double precision, down to the last image.
 fn many_mirrors(_: u32) {
     let mut scene = Scene::empty();
     scene.ambient_intensity = 0.4;

@@ -1,4 +1,4 @@
-//! The referee: POV-Ray, an engine with which Glint shares no code, draws the same pictures.
+//! POV-Ray as the referee: an engine with which Glint shares no code renders the same pictures.
 
 use std::process::Command;
 
@@ -20,12 +20,12 @@ fn by_glint(scene: &Scene, methods: Methods) -> Image {
     picture(scene, &wanted).0
 }
 
-/// How many of a million pixels differ by more than one level of 255 in some channel.
+/// The number of pixels per million that differ by more than one level of 255 in some channel.
 fn different_ppm(a: &Image, b: &Image) -> usize {
     differing(a, b, 1) * 1_000_000 / a.pixels.len()
 }
 
-/// Takes from a scene what POV-Ray means something else by: colours above white, and smooth meshes.
+/// Removes what POV-Ray interprets differently: colours above white, and smooth meshes.
 fn dim_and_flatten(scene: &mut Scene) {
     scene.ambient_intensity *= 0.5;
     for index in 0..scene.lights.len() {
@@ -59,7 +59,7 @@ fn povray_draws_the_same_pictures() {
     for (name, mut scene) in scenes {
         scene.render.width = scene.render.width.min(512);
         scene.render.height = scene.render.height.min(512);
-        // Where the model means something else, the pictures are close as they are, and the same without that.
+        // Where POV-Ray's model differs, the pictures are still close, and the same once the difference is removed.
         if !povray_differences(&scene).is_empty() {
             let theirs = by_povray(&scene, 2, &RenderControl::default()).expect("POV-Ray");
             let ppm = different_ppm(&by_glint(&scene, Methods::default()), &theirs.picture);
@@ -73,7 +73,7 @@ fn povray_draws_the_same_pictures() {
         println!("{name}: {ppm} ppm of the pixels differ by more than 1/255");
         assert!(ppm <= 1000, "{name}: {ppm} ppm");
     }
-    // The referee can say no: shadow rays that start 20 units off their surface are another picture.
+    // The comparison can fail: with shadow rays that start 20 units off their surface, the picture is different.
     let demo = Scene::demo();
     let wrong = Methods {
         offset: RayOffset::Fixed(20.0),

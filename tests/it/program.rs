@@ -1,4 +1,4 @@
-//! The program itself, and what it leaves in folders.
+//! Running the program, and listing the files that it leaves.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::PATIENCE;
 /// The published flight.
 pub const FLIGHT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/flight.ron");
 
-/// The program with these words.
+/// The program with these arguments.
 pub fn glint(words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
     command.args(words);
@@ -22,7 +22,7 @@ pub fn run(command: &mut Command) -> Output {
     command.output().expect("it runs")
 }
 
-/// What a command that does its work says on stdout.
+/// What a successful command writes to stdout.
 pub fn done(command: &mut Command) -> String {
     let output = run(command);
     let said = String::from_utf8_lossy(&output.stderr);
@@ -30,7 +30,7 @@ pub fn done(command: &mut Command) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// The names of what is in a folder, in order, hidden files too.
+/// The names of the files in a folder, sorted, including hidden ones.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let entries = entries.map(|entry| entry.expect("an entry").file_name());
@@ -41,7 +41,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Waits until something is so.
+/// Waits until a condition holds.
 pub fn wait_until(what: &str, mut is_true: impl FnMut() -> bool) {
     let start = Instant::now();
     while !is_true() {

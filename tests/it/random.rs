@@ -1,5 +1,5 @@
-//! Scenes that several tests share: random ones with a fixed seed, of what both Glint and POV-Ray can
-//! say, and the published views.
+//! Scenes shared by several tests: random ones with fixed seeds, limited to what both Glint and POV-Ray can
+//! represent, and the published views.
 
 use glam::DVec3;
 use glint::lab::stability::{GOLDEN, mixed, share};
@@ -8,7 +8,7 @@ use glint::scene::{
     Sphere, Triangle, check,
 };
 
-/// Random numbers that are the same everywhere, as a test must be.
+/// Random numbers that are the same on every machine.
 pub struct Dice(pub u64);
 
 impl Dice {
@@ -30,9 +30,9 @@ impl Dice {
     }
 }
 
-/// A scene of spheres, triangles and a plane, some of them mirrors, under one to three lights,
-/// seen through either camera. Highlights are grey and nothing is brighter than white, because
-/// POV-Ray has no coloured highlight and no clamp per bounce.
+/// A scene of spheres, triangles and a plane, some of them mirrors, under one to three lights, in either
+/// projection. Highlights are grey and nothing is brighter than white, because POV-Ray has no coloured highlights
+/// and does not clamp per bounce.
 pub fn scene(seed: u64) -> Scene {
     let dice = &mut Dice(seed.wrapping_mul(7919) + 1);
     let mut scene = Scene::empty();
@@ -62,7 +62,7 @@ pub fn scene(seed: u64) -> Scene {
     scene
 }
 
-/// The demo from both cameras that the original report publishes.
+/// The demo from both camera positions that the original report publishes.
 pub fn published() -> [Scene; 2] {
     let first = Scene::demo();
     let mut second = first.clone();
@@ -72,7 +72,7 @@ pub fn published() -> [Scene; 2] {
     [first, second]
 }
 
-/// Triangles of any form over a floor that mirrors them, and takes their shadows from two lights.
+/// Triangles of arbitrary form over a floor that mirrors them and receives their shadows from two lights.
 pub fn shards() -> Scene {
     let mut scene = Scene::demo();
     scene.objects.retain(|object| object.name == "Plane");
@@ -93,7 +93,7 @@ pub fn shards() -> Scene {
     scene
 }
 
-/// The scene of this seed with discs in it: some lie, some lean, two are mirrors.
+/// The scene of this seed with discs added: some horizontal, some slanting, two of them mirrors.
 pub fn with_discs(seed: u64) -> Scene {
     let mut scene = scene(seed);
     let dice = &mut Dice(seed.wrapping_mul(104_729) + 5);

@@ -1,5 +1,5 @@
-//! The lines of the README: those that draw, check and export are run, and what it shows of their output is what they
-//! say.
+//! The commands in the README: those that render, check and export are run, and their output must be what the
+//! README shows.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// Lines that need more than the program, take minutes, or change the desktop of whoever tests.
+/// Commands that need other programs, take minutes, or change the tester's desktop.
 const ELSEWHERE: [&str; 6] = [
     "glint chart",
     "glint stability",
@@ -17,7 +17,7 @@ const ELSEWHERE: [&str; 6] = [
     "openjd",
 ];
 
-/// What stands in the blocks of this language, block by block.
+/// The contents of the code blocks in this language.
 fn blocks(language: &str) -> Vec<String> {
     let text = fs::read_to_string(Path::new(ROOT).join("README.md")).expect("the README");
     let parts = text.split("\n```").skip(1).step_by(2);
@@ -26,7 +26,7 @@ fn blocks(language: &str) -> Vec<String> {
     own.map(|(_, block)| block.to_owned()).collect()
 }
 
-/// A folder that looks like the project's to the lines, and the way to the program by its name.
+/// A folder laid out like the project, and a `PATH` on which the program is found by its name.
 fn workplace() -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().expect("a folder");
     for own in ["scenes", "screenshots"] {
@@ -45,7 +45,7 @@ fn workplace() -> (tempfile::TempDir, String) {
     (folder, path)
 }
 
-/// What a line says, on both streams, one after the other as they come.
+/// Runs a command; returns its success, and its output on both streams interleaved.
 fn run(line: &str, (folder, path): (&Path, &str)) -> (bool, String) {
     let output = Command::new("sh")
         .args(["-c", &format!("{{ {line}\n}} 2>&1")])

@@ -1,9 +1,9 @@
-//! The referee that is always there: a second engine, written from the description of the picture and not
-//! from the tracer, with which it shares no code. It knows nothing of lanes, tiles, trees, plans and single
-//! precision: one ray at a time meets everything there is, in `f64`, and a new ray starts a little off its
-//! surface. Whatever it and Glint see alike, two programs have read out of the same words.
+//! The built-in referee: a second engine, written from the specification of the picture and not from the tracer,
+//! with which it shares no code. It has no lanes, tiles, trees, plans or single precision: one ray at a time is
+//! tested against everything, in `f64`, and secondary rays start a little off the surface. Where it and Glint
+//! agree, two independent programs have read the same specification.
 //!
-//! It takes faces as flat: the words do not say how the normals of a curved surface are made from them.
+//! It treats faces as flat, as the specification does not say how the normals of a curved surface are computed.
 
 use glam::{DQuat, DVec3};
 use glint::image::{Image, render};
@@ -18,28 +18,28 @@ use crate::random;
 const WIDTH: u32 = 160;
 const HEIGHT: u32 = 120;
 
-/// Pixels of which two pictures may differ in one, in double precision and in the one that the plan chooses.
+/// One in this many pixels may differ, for double precision and for the precision that the plan chooses.
 const ONE_OF: [(Precision, usize); 2] = [(Precision::Double, 1000), (Precision::Auto, 500)];
 
-/// Share of a length below which it is nothing: millions of roundings, and far less than shows.
+/// Fraction of a length that counts as nothing: millions of rounding errors, and far less than is visible.
 const LITTLE: f64 = 1e-9;
 
-/// Faces of a mesh that have a ball around them together.
+/// Number of faces of a mesh that share a bounding sphere.
 const GROUP: usize = 64;
 
-/// Half a line; its way has the length 1, so that distances are lengths.
+/// A ray; `way` has length 1, so that parameters are distances.
 struct Ray {
     origin: DVec3,
     way: DVec3,
 }
 
 impl Ray {
-    /// The point so far ahead.
+    /// The point at a distance along the ray.
     fn at(&self, distance: f64) -> DVec3 {
         self.origin + self.way * distance
     }
 
-    /// How far from the line a point is, squared, and how far ahead.
+    /// The squared distance of a point from the line, and the distance along the ray.
     fn arm_to(&self, point: DVec3) -> (f64, f64) {
         let arm = point - self.origin;
         let ahead = arm.dot(self.way);
@@ -47,13 +47,13 @@ impl Ray {
     }
 }
 
-/// Where a ray meets something; the normal is on either side.
+/// Where a ray hits something; the normal may be on either side.
 struct Hit {
     distance: f64,
     normal: DVec3,
 }
 
-/// A few faces and a ball around them, without which a mesh would take minutes.
+/// A few faces and their bounding sphere, without which a mesh would take minutes.
 struct Group {
     faces: Vec<[DVec3; 3]>,
     center: DVec3,
@@ -61,7 +61,7 @@ struct Group {
 }
 
 impl Group {
-    /// The ball has its middle among the corners and reaches to the farthest.
+    /// The sphere is centred at the mean of the corners and reaches the farthest one.
     fn of(faces: &[[DVec3; 3]]) -> Self {
         let corners = faces.as_flattened();
         let center = corners.iter().sum::<DVec3>() / corners.len() as f64;
@@ -73,13 +73,13 @@ impl Group {
         }
     }
 
-    /// Only what cannot meet the ray is left out, so that the ball changes nothing in the picture.
+    /// Leaves out only what cannot hit the ray, so that the sphere has no effect on the picture.
     fn may_meet(&self, ray: &Ray) -> bool {
         ray.arm_to(self.center).0 <= self.radius * self.radius
     }
 }
 
-/// What a ray can meet. A plane is a disc without an end, and a triangle a mesh of one face.
+/// What a ray can hit. A plane is an infinite disc, and a triangle is a mesh of one face.
 enum Form {
     Ball(DVec3, f64),
     Disc(DVec3, DVec3, f64),
@@ -87,7 +87,7 @@ enum Form {
 }
 
 impl Form {
-    /// One form for each shape of the file, in world coordinates.
+    /// Converts a shape of the file to world coordinates.
     fn of(shape: &Shape) -> Self {
         match shape {
             Shape::Sphere(ball) => Self::Ball(ball.center, ball.radius),
@@ -98,7 +98,7 @@ impl Form {
         }
     }
 
-    /// The nearest place ahead where a ray meets it.
+    /// The nearest hit in front of the ray's origin.
     fn meet(&self, ray: &Ray) -> Option<Hit> {
         match self {
             Self::Ball(center, radius) => meet_ball(*center, *radius, ray),
@@ -113,7 +113,7 @@ impl Form {
     }
 }
 
-/// The faces of a mesh where they are: scaled, turned about x, then y, then z, then moved.
+/// The faces of a mesh in world coordinates: scaled, rotated about x, then y, then z, then moved.
 fn faces_of(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     let [x, y, z] = mesh.rotation.to_array().map(f64::to_radians);
     let turn = DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
@@ -124,10 +124,10 @@ fn faces_of(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     triangles.faces().iter().map(corners).collect()
 }
 
-/// A ball is met where the ray goes in, or from within, where it goes out.
+/// A sphere is hit where the ray enters it or, from inside, where it leaves it.
 fn meet_ball(center: DVec3, radius: f64, ray: &Ray) -> Option<Hit> {
     let (across, ahead) = ray.arm_to(center);
-    // Not a number, and so not ahead, for a ray that passes.
+    // NaN for a ray that misses, which then fails the comparison below.
     let half = (radius * radius - across).sqrt();
     let mut ends = [ahead - half, ahead + half].into_iter();
     let distance = ends.find(|end| *end > 0.0)?;
@@ -135,7 +135,7 @@ fn meet_ball(center: DVec3, radius: f64, ray: &Ray) -> Option<Hit> {
     Some(Hit { distance, normal })
 }
 
-/// A disc is met from both sides, and not from its edge.
+/// A disc is hit from both sides, but not edge-on.
 fn meet_disc(center: DVec3, normal: DVec3, radius: f64, ray: &Ray) -> Option<Hit> {
     let distance = (center - ray.origin).dot(normal) / ray.way.dot(normal);
     let is_ahead = distance > 0.0 && distance.is_finite();
@@ -143,8 +143,8 @@ fn meet_disc(center: DVec3, normal: DVec3, radius: f64, ray: &Ray) -> Option<Hit
     is_met.then_some(Hit { distance, normal })
 }
 
-/// A face is met where the shares of its corners in the place are none below zero, by Cramer's rule; a little
-/// below counts, so that nothing is seen between neighbours.
+/// A face is hit where no barycentric coordinate is negative, by Cramer's rule; slightly negative ones count, so
+/// that there are no gaps between neighbours.
 fn meet_face(&[a, b, c]: &[DVec3; 3], ray: &Ray) -> Option<Hit> {
     let (ab, ac, arm) = (b - a, c - a, ray.origin - a);
     let (beside, beyond) = (ray.way.cross(ac), arm.cross(ab));
@@ -159,14 +159,14 @@ fn meet_face(&[a, b, c]: &[DVec3; 3], ray: &Ray) -> Option<Hit> {
     })
 }
 
-/// Something with its material.
+/// An object with its material.
 struct Thing<'a> {
     form: Form,
     pack: &'a ColorPack,
     is_marker: bool,
 }
 
-/// A place that is seen: on which side, from where, and where new rays start.
+/// A visible point: the normal on its visible side, the direction it is seen from, and the start of secondary rays.
 struct Spot<'a> {
     place: DVec3,
     start: DVec3,
@@ -175,7 +175,7 @@ struct Spot<'a> {
     pack: &'a ColorPack,
 }
 
-/// A scene to be traced.
+/// A scene prepared for tracing.
 struct Engine<'a> {
     scene: &'a Scene,
     things: Vec<Thing<'a>>,
@@ -183,7 +183,7 @@ struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    /// What is invisible is not there, nor are the markers of lights that are off.
+    /// Invisible objects are left out, and so are the markers of lights that are off.
     fn new(scene: &'a Scene) -> Self {
         let thing = |form, pack: &str, is_marker| Thing {
             form,
@@ -207,7 +207,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// What a ray meets first. Of surfaces in each other that is the one that the file has first.
+    /// The nearest hit. Of coincident surfaces, the first in the file wins.
     fn nearest(&self, ray: &Ray) -> Option<(Hit, &Thing<'a>)> {
         let mut nearest: Option<(Hit, &Thing)> = None;
         for thing in &self.things {
@@ -220,7 +220,7 @@ impl<'a> Engine<'a> {
         nearest
     }
 
-    /// The colour at the end of a ray, 0–1, if light may still be mirrored so often.
+    /// The colour seen along a ray, 0–1, with this many reflections left.
     fn color(&self, ray: &Ray, mirrors_left: u32) -> DVec3 {
         let Some((hit, thing)) = self.nearest(ray) else {
             return self.scene.background / 255.0;
@@ -248,7 +248,7 @@ impl<'a> Engine<'a> {
         (color / 255.0).min(DVec3::ONE)
     }
 
-    /// What a light adds to the colour of a place, 0–255: nothing from behind, or if anything is between.
+    /// What a light adds to the colour of a point, 0–255: nothing from behind or if it is blocked.
     fn light_at(&self, spot: &Spot, light: &Light) -> DVec3 {
         let arm = light.position - spot.place;
         let (distance, way) = (arm.length(), arm.normalize_or_zero());
@@ -263,14 +263,14 @@ impl<'a> Engine<'a> {
         (spot.pack.diffuse * facing + spot.pack.specular * highlight) * light.intensity
     }
 
-    /// Whether a shadow falls. A surface that the light itself is on casts none of it.
+    /// Whether the point is in shadow. A surface on which the light itself lies does not block it.
     fn is_blocked(&self, ray: &Ray, distance: f64) -> bool {
         let mut others = self.things.iter().filter(|thing| !thing.is_marker);
         let end = distance * (1.0 - LITTLE);
         others.any(|thing| thing.form.meet(ray).is_some_and(|hit| hit.distance < end))
     }
 
-    /// The picture, line by line from its top, a ray through the middle of each pixel.
+    /// Renders the picture row by row from the top, with a ray through the centre of each pixel.
     fn picture(&self) -> Vec<[u8; 3]> {
         let (width, height) = (f64::from(WIDTH), f64::from(HEIGHT));
         let pixels = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| (column, row)));
@@ -285,7 +285,7 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// The ray through a place of the picture, in image heights from its middle, y up.
+/// The ray through a position in the picture, in image heights from its centre, y up.
 fn through(camera: &Camera, x: f64, y: f64) -> Ray {
     let w = -camera.look_at.normalize();
     let u = camera.up.cross(w).normalize();
@@ -298,7 +298,7 @@ fn through(camera: &Camera, x: f64, y: f64) -> Ray {
     Ray { origin, way }
 }
 
-/// The picture by the engine that is judged.
+/// The picture by the engine under test.
 fn by_glint(scene: &Scene, precision: Precision) -> Image {
     let wanted = RenderRequest {
         precision,
@@ -309,7 +309,7 @@ fn by_glint(scene: &Scene, precision: Precision) -> Image {
     drawn.expect("not stopped").0
 }
 
-/// How many pixels differ by more than one level of 255 in some channel.
+/// The number of pixels that differ by more than one level of 255 in some channel.
 fn differing(ours: &[[u8; 3]], theirs: &Image) -> usize {
     assert_eq!(ours.len(), theirs.pixels.len());
     let pairs = ours.iter().zip(&theirs.pixels);
@@ -318,7 +318,7 @@ fn differing(ours: &[[u8; 3]], theirs: &Image) -> usize {
         .count()
 }
 
-/// Both engines see a scene alike, through either camera.
+/// Asserts that both engines agree on a scene, in both projections.
 pub fn assert_agreed(name: &str, mut scene: Scene) {
     for projection in [Projection::Perspective, Projection::Orthographic] {
         scene.camera.projection = projection;
@@ -353,7 +353,7 @@ fn a_second_engine_draws_random_scenes_alike() {
     }
 }
 
-/// What is done to a scene, in words and in fact.
+/// A change of a scene: its description, and the function.
 type Change = (&'static str, fn(&mut Scene));
 
 #[test]

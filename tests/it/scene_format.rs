@@ -1,27 +1,27 @@
-//! The description of the scene file against the parser: every field is told, with its true default, and what it must
-//! be is what is let in.
+//! Compares the description of the scene format with the parser: every field is documented, with its actual default
+//! and the values that are accepted.
 
 use glint::scene::{Document, Scene};
 
 const TEXT: &str = include_str!("../../assets/scene_format.md");
 
-/// A line of a table.
+/// A row of a table.
 struct Row {
     field: String,
-    /// What holds where it is left out, if that can be written down.
+    /// The documented default, if it can be written as a value.
     default: Option<String>,
-    /// What to write where it cannot be left out.
+    /// A value to write if the field is mandatory.
     sample: Option<String>,
     must_be: String,
 }
 
-/// A table: what it is about, and its lines.
+/// A table: the type it describes, and its rows.
 struct Table {
     name: String,
     rows: Vec<Row>,
 }
 
-/// What stands between the first two backticks.
+/// The text between the first two backticks.
 fn quoted(cell: &str) -> Option<String> {
     cell.split('`').nth(1).map(str::to_owned)
 }
@@ -49,7 +49,7 @@ fn tables() -> Vec<Table> {
     sections.map(table).collect()
 }
 
-/// A scene file with one thing of a kind in it, which has these fields.
+/// A scene file that contains one value of a type with these fields.
 fn file(kind: &str, fields: &str) -> String {
     let own = format!("{kind}({fields})");
     let object = |shape: &str| {
@@ -92,7 +92,7 @@ fn read(text: &str) -> Result<Scene, String> {
 }
 
 impl Table {
-    /// The scene of a thing whose field has this value; `None` leaves it out.
+    /// Reads a scene in which the field has this value; `None` omits it.
     fn with(&self, field: &str, value: Option<&str>) -> Result<Scene, String> {
         let needed = self.rows.iter().filter(|row| row.field != field);
         let needed = needed.filter_map(|row| Some((&row.field, row.sample.as_ref()?)));
@@ -119,7 +119,7 @@ impl Table {
     }
 }
 
-/// The ends of a range such as `0–1`.
+/// The limits of a range such as `0–1`.
 fn range(must_be: &str) -> Option<(f64, f64)> {
     let numbers = must_be.split(',').next()?;
     let (low, high) = numbers.split_once('–')?;
@@ -163,7 +163,7 @@ fn defaults_are_the_ones_that_are_told() {
     }
 }
 
-/// What a field that must be this lets in, and what it refuses; `None` for what cannot be tried.
+/// Values that the description of a field accepts, and values that it rejects; `None` if they cannot be tested.
 fn examples(must_be: &str) -> Option<(Vec<String>, Vec<String>)> {
     let all = |values: &[&str]| values.iter().map(|value| (*value).to_owned()).collect();
     let told = |good: &[&str], bad: &[&str]| Some((all(good), all(bad)));

@@ -1,4 +1,4 @@
-//! Scene files: the published ones, broken ones, and what saving does to a disk.
+//! Scene files: the published ones, invalid ones, and how they are saved to disk.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use glint::scene::{
 };
 use proptest::prelude::*;
 
-/// The scene files of a folder of the project, sorted.
+/// The scene files in a folder of the project, sorted.
 pub fn files_in(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder).expect("a folder");
@@ -22,7 +22,7 @@ pub fn files_in(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// What an error says behind the file's name, without the lines that show the place.
+/// The message of an error after the file's name, without the lines that show the position.
 fn said(path: &Path, error: &SceneError) -> String {
     let text = error.to_string();
     let first = text.lines().next().unwrap_or_default();
@@ -88,7 +88,7 @@ fn what_it_is_traced_with_is_kept_and_the_default_is_not_written() {
     assert!(!plain.contains("antialias") && !plain.contains("offset"));
 }
 
-/// Files of people hold these words: they stay what they are, whatever the program calls them.
+/// Users' files contain these words, so they remain valid whatever the program calls them.
 #[test]
 fn a_file_with_every_word_is_read_and_written_again() {
     let text = r#"Scene(
@@ -355,7 +355,7 @@ fn saving_follows_links_and_keeps_permissions() {
         0o640
     );
     assert_eq!(Document::load(&real).expect("valid").scene, Scene::demo());
-    // A link to a file that is not there yet makes that file.
+    // Saving through a link to a file that does not exist creates that file.
     let (new, early) = (
         folder.path().join("new.ron"),
         folder.path().join("early.ron"),
@@ -381,7 +381,7 @@ fn a_save_that_fails_leaves_the_old_file_and_nothing_else() {
         .expect_err("no such folder")
         .to_string();
     assert!(error.starts_with("cannot write "), "{error}");
-    // A folder under the name of the file: the new text must not be left lying beside it.
+    // A folder has the name of the file: the temporary file with the new text must be removed.
     let taken = folder.path().join("taken.ron");
     fs::create_dir(&taken).expect("made");
     document.save(&taken).expect_err("a folder is in the way");

@@ -1,5 +1,5 @@
-//! The timeline, driven in the window: recording, keys, playing, what is drawn of the flight; and
-//! frames on the command line.
+//! The timeline, driven in the window: recording, keys, playback, and the flight drawn in the viewport; and frames
+//! rendered on the command line.
 
 use std::process::Command;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use glint::worker::{ThumbnailJob, Worker};
 use crate::harness::{CTRL, EditorHarness, survey_flight};
 use crate::program::FLIGHT;
 
-/// Work that a program has left behind.
+/// Unsaved work left by an ended program.
 fn unsaved(document: Document) -> Leftover {
     Leftover {
         document,
@@ -36,7 +36,7 @@ fn flight() -> Scene {
     Document::load(FLIGHT.as_ref()).expect("a scene").scene
 }
 
-/// A window on a demo whose camera moves at ten frames a second, with keys at these times so far to the right.
+/// A window on the demo with camera keys at ten frames per second, each given as a time and an offset to the right.
 pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     let mut scene = Scene::demo();
     let key = |&(time, right): &(f64, f64)| {
@@ -50,7 +50,7 @@ pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
 }
 
-/// The times of the keys of the camera, in seconds.
+/// Times of the camera keys in seconds, rounded to milliseconds.
 pub fn times(harness: &EditorHarness) -> Vec<f64> {
     let keys = harness.scene().animation.keys.iter();
     keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
@@ -72,7 +72,7 @@ fn hover_over_line(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Drags from a place by so much, in several moves, with keys held.
+/// Drags from a position by an offset, in several moves, with modifier keys held.
 fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modifiers) {
     let moved = |part: u16| from + by * f32::from(part) / 6.0;
     harness.window.event(Event::ModifiersChanged(modifiers));
@@ -90,7 +90,7 @@ fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modi
     harness.settle();
 }
 
-/// Selects the second and the third key of the camera.
+/// Selects the second and the third camera key.
 fn select_two_keys(harness: &mut EditorHarness) {
     harness.click("Key 2");
     harness
@@ -100,7 +100,7 @@ fn select_two_keys(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Points on screen for a second of the timeline.
+/// Width of a second on the timeline, in points.
 fn points_per_second(harness: &EditorHarness) -> f32 {
     let (first, last) = (
         place_of(harness, "Key 1"),
@@ -144,7 +144,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     assert!(harness.editor().looks_through(), "the flight is shown");
     harness.window.get_by_label_contains("samples → ");
     assert_eq!(harness.editor().undo_label(), Some("Record flight"));
-    // The slider makes other keys of the same take.
+    // The slider makes new keys from the same take.
     let mut editor = Editor::demo();
     let text = harness.editor().to_text().expect("a text");
     editor.recover(unsaved(Document::from_text(&text).expect("a scene")));
@@ -156,7 +156,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     assert!(coarse <= count && count <= fine, "{coarse} {count} {fine}");
     assert!(editor.timeline().worst.expect("measured").off <= 100.0);
     assert_eq!(editor.scene().animation.take.as_deref(), Some(&*take));
-    // One step back is before the recording.
+    // A single undo leads back to before the recording.
     harness.press(Modifiers::COMMAND, Key::Z);
     assert!(harness.scene().animation.is_still());
 }
@@ -177,7 +177,7 @@ fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     record(&mut editor);
     assert!(editor.is_making_keys() && editor.is_dirty());
     let take = editor.wanted_survey().cloned().expect("a take");
-    // Before anyone has found out what the first one saw.
+    // Before the worker has surveyed the first take.
     record(&mut editor);
     survey_flight(&mut editor);
     assert!(!editor.is_making_keys());
@@ -192,7 +192,7 @@ fn a_recording_without_a_movement_leaves_the_flight_as_it_is() {
     editor.apply(Action::Time(Time::Record));
     for tenth in 0..20 {
         editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
-        // Things may be looked at as they move; the camera is the one that is flown.
+        // Moving things may be watched during a recording; it is the camera that is flown.
         editor.apply(Action::Time(Time::Seek(f64::from(tenth))));
         assert!(!editor.looks_through());
     }
@@ -206,7 +206,7 @@ fn keys_are_set_overwritten_and_deleted() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(times(&harness), [0.0]);
-    // With one key there is no time yet: a second one is typed.
+    // With one key the flight has no duration: a second key is added to the text.
     let mut later = harness.scene().animation.clone();
     Arc::make_mut(&mut later)
         .keys
@@ -221,7 +221,7 @@ fn keys_are_set_overwritten_and_deleted() {
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
     harness.press(Modifiers::NONE, Key::CloseBracket);
     assert_eq!(harness.editor().shown_time(), 2.0);
-    // Fly away from the key, and put the view into it.
+    // Flies away from the key, and overwrites it with the view.
     harness.window.key_down(Key::D);
     (0..30).for_each(|_| harness.window.step());
     harness.window.key_up(Key::D);
@@ -236,7 +236,7 @@ fn keys_are_set_overwritten_and_deleted() {
     assert_eq!(times(&harness), [0.0, 2.0], "the key there is overwritten");
     assert_eq!(harness.scene().animation.keys[1].value, view);
     assert_eq!(harness.editor().undo_label(), Some("Add key"));
-    // The key is selected: its numbers are in the inspector.
+    // The key is selected: its values are in the inspector.
     harness.type_into("time", "3.5");
     assert_eq!(times(&harness), [0.0, 3.5]);
     harness.type_into("position x", "12");
@@ -317,7 +317,7 @@ fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
     ] {
         editor.apply(Action::Edit(Edit::animation(edited, "Edit")));
         let off = editor.timeline().worst.expect("measured").off;
-        // Without its end, or with another one, the last curve is another.
+        // With its last key removed, or another one added, the last curve changes.
         assert!(off < 5.0 * said, "{off} px where {said} were said");
         editor.apply(Action::Time(Time::Simplify(5.0)));
         let duration = editor.scene().animation.duration();
@@ -345,7 +345,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     assert_eq!(harness.editor().undo_label(), Some("Copy keys"));
     let keys = &harness.scene().animation.keys;
     assert_eq!(keys[1].value, keys[3].value);
-    // Two keys together; the later one replaces what it lands on.
+    // Two keys are moved together; the later one replaces the key at its new time.
     select_two_keys(&mut harness);
     assert_eq!(harness.editor().selection().keys().len(), 2);
     let at = place_of(&harness, "Key 2");
@@ -353,7 +353,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
     let words = "This has replaced 1 key; undo brings it back";
     harness.window.get_by_label_contains(words);
-    // None goes before the start.
+    // Keys cannot be moved before the start.
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
     assert_eq!(times(&harness)[0], 0.0);
@@ -365,7 +365,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
         [0.0, 1.0, 2.0, 4.0],
         "one step for each drag"
     );
-    // The time of the earliest of several is typed; the others follow.
+    // The time of the earliest selected key is typed; the others follow.
     select_two_keys(&mut harness);
     harness.window.get_by_label("2 keys in 1 s");
     harness.type_into("first at", "1.25");
@@ -418,7 +418,7 @@ fn playing_is_real_time_whatever_the_frames() {
     for (repeat, seconds, expected) in [
         (Repeat::Loop, 1.5, 1.5),
         (Repeat::Loop, 2.5, 0.5),
-        // The last frame stays a frame long, as others do.
+        // The last frame lasts as long as the others.
         (Repeat::PingPong, 2.5, 1.5 + 1.0 / 14.0),
         (Repeat::PingPong, 4.5, 0.5),
         (Repeat::Once, 3.0, 2.0),
@@ -471,7 +471,7 @@ fn the_last_frame_is_played_and_a_round_is_as_long_as_its_frames() {
             shown as u32 + 1
         });
         assert_eq!(frames, expected, "{repeat:?}");
-        // From its last frame, it begins again.
+        // At the last frame, playback starts from the beginning.
         if repeat == Repeat::Once {
             editor.apply(Action::Time(Time::Play(true)));
             assert_eq!(editor.shown_time(), 0.0);
@@ -527,7 +527,7 @@ fn the_window_plays_and_pauses() {
     harness.press(Modifiers::NONE, Key::C);
     assert!(!harness.editor().looks_through());
     assert_eq!(harness.editor().shown().camera, harness.scene().camera);
-    // From outside it plays too, and one may fly meanwhile.
+    // Playback also works from outside the shot, and the user can fly meanwhile.
     harness.window.key_press(Key::G);
     harness.window.key_down(Key::S);
     (0..30).for_each(|_| harness.window.step());
@@ -649,7 +649,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
     harness.click("Shot");
     assert!(harness.editor().looks_through());
     assert!(harness.window.query_by_label("Shot").is_none());
-    // The second click of two is not one on what is behind it.
+    // The second click of a double click does not hit what is behind it.
     let before = harness.editor().selection().clone();
     harness.press(Modifiers::NONE, Key::Escape);
     while harness.window.query_by_label("Shot").is_none() {
@@ -672,7 +672,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
 #[test]
 fn a_key_is_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
-    // From farther back the flight is in sight.
+    // From farther back, the flight is in view.
     harness.window.key_down(Key::S);
     (0..60).for_each(|_| harness.window.step());
     harness.window.key_up(Key::S);
@@ -697,7 +697,7 @@ fn a_key_is_dragged_in_the_view() {
     );
     harness.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(harness.scene().animation.keys[1].value, before, "one step");
-    // Esc takes back what is still held, and leaves it selected.
+    // Escape cancels a drag in progress, and leaves the key selected.
     let selected = harness.editor().selection().clone();
     harness.window.drag_at(at);
     harness.window.step();
@@ -751,7 +751,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
         "the scene's own stays"
     );
     assert_eq!(harness.editor().shown().lights[0].intensity, 0.8);
-    // Other fields of the same light are no keys.
+    // Changing other properties of the same light sets no keys.
     harness.type_into("position x", "90");
     assert_eq!(harness.scene().lights[0].position.x, 90.0);
     assert_eq!(harness.scene().lights[0].intensity, 0.2);
@@ -764,7 +764,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
         (harness.editor().shown().lights[0].intensity - 0.5).abs() < 1e-9,
         "halfway"
     );
-    // Keys follow a new name, and go with the light.
+    // Keys follow a change of the name, and are deleted with the light.
     harness.type_name("name", "Sun");
     assert_eq!(
         harness.scene().animation.tracks[0].target.owner(),
@@ -788,8 +788,8 @@ fn a_hand_on_what_has_keys_stops_what_plays() {
     assert_eq!(harness.scene().animation.tracks[0].keys.len(), 3);
 }
 
-/// A window in which the camera has keys at 0 and 2 seconds, and so has the intensity of a light, from 0.2 to 0.8; and
-/// the name of that row.
+/// A window in which the camera has keys at 0 and 2 seconds, and a light's intensity, too, from 0.2 to 0.8. Also
+/// returns the name of that row.
 fn brightening() -> (EditorHarness, String) {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 0.0)]);
     harness.click("Light 1");
@@ -807,7 +807,7 @@ fn delete_is_meant_for_the_key_of_a_value_that_was_clicked_last() {
     harness.press(Modifiers::NONE, Key::Delete);
     assert_eq!(harness.scene().animation.tracks[0].keys.len(), 1);
     assert_eq!(harness.scene().lights.len(), 2);
-    // What is clicked then is meant again.
+    // A thing that is clicked next is what Delete applies to again.
     harness.click(&format!("{track} key 1"));
     harness.click("Light 1");
     harness.press(Modifiers::NONE, Key::Delete);
@@ -826,7 +826,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     };
     assert_eq!((key.time, key.value), (1.5, Value::Number(0.5)));
     assert_eq!(harness.scene().lights[0].intensity, 0.2, "its own stays");
-    // It is still the one that is selected; with a key of the camera, both are moved, as far.
+    // It is still selected; with a camera key added, both are moved by the same amount.
     harness
         .window
         .get_by_label("Key 2")
@@ -842,7 +842,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     };
     assert_eq!(times(&harness), [0.0, 2.5]);
     assert_eq!(of_value(&harness), [0.0, 2.0]);
-    // A frame around keys of two rows; what is not in it is not selected any more.
+    // A marquee around keys of two rows; keys outside it are deselected.
     let (first, last) = (
         place_of(&harness, "Key 1"),
         place_of(&harness, &format!("{track} key 1")),
@@ -860,7 +860,8 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
             .map(|track| KeyPlace { track, index: 0 })
             .into()
     );
-    // Undo brings back what was selected when it was done; a frame with Shift adds, and Escape takes one back.
+    // Undo restores the selection at the time of the edit; Shift makes a marquee add to it, and Escape cancels a
+    // marquee.
     harness.press(CTRL, Key::Z);
     assert_eq!(times(&harness), [0.0, 2.0]);
     assert_eq!(harness.editor().selection().keys().len(), 2);
@@ -880,7 +881,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     harness.window.drop_at(to);
     harness.settle();
     assert_eq!(harness.editor().selection().keys().len(), 3);
-    // All keys of both, where the pointer is over their line.
+    // All keys of both rows, with the pointer over the timeline.
     hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
     assert_eq!(harness.editor().selection().keys().len(), 4);
@@ -888,7 +889,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     assert!(harness.scene().animation.is_still());
     harness.press(CTRL, Key::Z);
     assert_eq!(of_value(&harness), [0.0, 2.0]);
-    // A click on what a row is about selects its keys, and a frame may begin there.
+    // A click on a row's label selects the keys of the row, and a marquee can start there.
     let row = place_of(&harness, &format!("{track} key 1"));
     let at = pos2(30.0, row.y);
     harness.window.drag_at(at);
@@ -1017,7 +1018,7 @@ fn paths_go_out_to_a_table_and_come_back() {
         .get_by_label_contains("circle.csv without the ways and paces between keys");
 }
 
-/// A frame on the command line is what the playhead shows in the window, byte by byte.
+/// A frame rendered on the command line equals the frame at the playhead in the window, byte by byte.
 #[test]
 fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
     let mut scene = flight();
@@ -1121,7 +1122,7 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     assert_eq!(left, ways);
     assert!(keys.iter().all(|key| key.easing == keys[0].easing));
     assert_eq!(harness.editor().undo_label(), Some("Key: pace"));
-    // What the first has already may be picked for all.
+    // Choosing the value that the first key already has applies it to all.
     harness.window.get_by_label("Not the same for all: way");
     harness.unfold("way");
     harness.click(ways[0].name());

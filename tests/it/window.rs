@@ -9,7 +9,7 @@ use image::RgbaImage;
 
 use crate::PATIENCE;
 
-/// A virtual display that ends with the test.
+/// A virtual display, which is stopped at the end of the test.
 struct Display {
     server: Child,
     name: String,
@@ -51,7 +51,7 @@ impl Display {
         String::from_utf8_lossy(&run.stdout).trim().to_owned()
     }
 
-    /// What the display shows.
+    /// A screenshot of the display.
     fn look(&self) -> RgbaImage {
         let run = Command::new("import")
             .args(["-window", "root", "png:-"])
@@ -75,7 +75,7 @@ impl Drop for Display {
     }
 }
 
-/// The program, which ends with the test.
+/// The program, which is stopped at the end of the test.
 struct Program {
     child: Child,
     folder: tempfile::TempDir,
@@ -99,8 +99,8 @@ impl Program {
         let window = display.tool("xdotool", &["search", "--name", "^Glint"]);
         let window = window.lines().next().expect("a window").to_owned();
         display.tool("xdotool", &["windowfocus", "--sync", &window]);
-        // Out of the picture, which says what the pointer is over; a display without a program forgets where
-        // the pointer was.
+        // Move the pointer out of the picture, which would show the name of what it hovers; a display without
+        // clients forgets the pointer's position.
         display.tool("xdotool", &["mousemove", "1270", "792"]);
         wait_for("rest", || {
             let before = display.look();
@@ -147,18 +147,18 @@ fn wait_for(what: &str, mut is_true: impl FnMut() -> bool) {
     }
 }
 
-/// The middle of the picture area: inside the demo's violet sphere.
+/// The colour in the middle of the picture area, which is inside the demo's violet sphere.
 fn middle(screen: &RgbaImage) -> [u8; 3] {
     let [r, g, b, _] = screen.get_pixel(590, 420).0;
     [r, g, b]
 }
 
-/// Whether that is the violet of the demo's first sphere.
+/// Returns whether a colour is the violet of the demo's first sphere.
 fn is_violet([r, g, b]: [u8; 3]) -> bool {
     r > 100 && b > 100 && g < r && g < b
 }
 
-/// How many pixels of the picture area differ.
+/// The number of pixels of the picture area that differ.
 fn changed(a: &RgbaImage, b: &RgbaImage) -> usize {
     let area = (240..940).flat_map(|x| (60..760).map(move |y| (x, y)));
     area.filter(|&(x, y)| a.get_pixel(x, y) != b.get_pixel(x, y))
@@ -191,11 +191,11 @@ fn the_window_shows_the_demo_follows_keys_and_closes() {
     });
     display.key("Escape");
     wait_for("the live view", || changed(&start, &display.look()) < 500);
-    // The first time it only says what quits.
+    // The first Escape only says how to quit.
     display.key("Escape");
     display.key("Escape");
     wait_for("the question", || changed(&start, &display.look()) > 50_000);
-    // Nor does the next key.
+    // The next key does not quit either.
     display.key("Return");
     wait_for("the window again", || {
         changed(&start, &display.look()) < 500
@@ -230,7 +230,7 @@ fn a_killed_program_loses_no_edit() {
         "{text}"
     );
     assert!(text.contains("light_visualization: false"));
-    // The next start brings the edit back: the markers are gone from the picture.
+    // The next start restores the edit: the markers are gone from the picture.
     let again = command(&display, program.folder.path())
         .args([scene, "--screenshot", "again.png"])
         .status()
@@ -327,10 +327,10 @@ fn the_window_takes_its_own_picture() {
     assert!(String::from_utf8_lossy(&bad.stderr).contains("the folder none does not exist"));
 }
 
-/// A Wayland compositor without a screen, which ends with the test.
+/// A Wayland compositor without a screen, which is stopped at the end of the test.
 struct Compositor {
     server: Child,
-    /// Where its socket is.
+    /// The folder of its socket.
     folder: tempfile::TempDir,
 }
 

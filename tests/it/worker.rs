@@ -1,4 +1,4 @@
-//! The render thread: newest wins, nothing is traced twice, nothing waits long.
+//! The render thread: the newest request wins, nothing is traced twice, and nothing waits long.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -37,7 +37,7 @@ fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
     }
 }
 
-/// Waits for a frame that fits, collecting all that come on the way.
+/// Waits for a frame that satisfies `fits`; returns all frames received until then.
 fn wait_for(worker: &Worker, fits: impl Fn(&Frame) -> bool) -> Vec<Frame> {
     let start = Instant::now();
     let mut frames = Vec::new();
@@ -57,7 +57,7 @@ fn wait_for(worker: &Worker, fits: impl Fn(&Frame) -> bool) -> Vec<Frame> {
     );
 }
 
-/// Thousands of spheres: about 20 µs a pixel.
+/// Thousands of spheres: about 20 µs per pixel.
 fn slow_scene() -> Arc<Scene> {
     let mut scene = Scene::demo();
     for n in 0..2000_u32 {
@@ -167,7 +167,7 @@ fn a_picture_whose_every_tile_takes_minutes_gives_way_at_once() {
     wait_until("a running still picture", || {
         matches!(worker.activity(), Activity::Still { .. })
     });
-    // Long enough for the first tiles to be begun.
+    // Long enough for the first tiles to be started.
     std::thread::sleep(Duration::from_millis(200));
     worker.submit(live(2, &Arc::new(Scene::demo()), 64));
     wait_for(&worker, |frame| !frame.is_still && frame.revision == 2);
@@ -262,7 +262,7 @@ fn a_picture_that_is_written_goes_on_where_it_was() {
 fn a_picture_that_is_on_screen_is_written_as_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
     let worker = Worker::new(Some(1), || {}).expect("a render thread");
-    // As no ray would paint it.
+    // A colour that tracing would not produce.
     let mut image = Image::new(16, 16);
     image.pixels.fill([1, 2, 3, 255]);
     let image = Arc::new(image);
@@ -302,7 +302,7 @@ fn a_picture_that_cannot_be_written_says_so() {
 #[test]
 fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
     let worker = Worker::new(Some(1), || {}).expect("a render thread");
-    // A scene that no file and no edit can make: an object without its pack has no material.
+    // An object without its pack has no material; no file and no edit can make such a scene.
     let mut broken = Scene::demo();
     broken.packs_mut().clear();
     worker.submit(live(1, &Arc::new(broken), 64));
@@ -326,7 +326,7 @@ fn dropping_the_handle_ends_the_thread() {
     wait_until("work", || {
         matches!(worker.activity(), Activity::Live { .. })
     });
-    // A first pass is stopped by nothing but this; the test would hang.
+    // Nothing else stops a first pass, so without this the test would hang.
     drop(worker);
 }
 
@@ -362,13 +362,13 @@ fn a_study_goes_on_under_the_live_view_and_can_be_given_up() {
     let mut last = 0.0;
     let mut measured = None;
     wait_until("the study's end", || {
-        // An edit in the middle of a piece is served first, and the piece is done again.
+        // An edit during a piece of work is served first, and the piece is repeated.
         revision += 1;
         worker.submit(live(revision, &scene, 32));
         wait_for(&worker, |frame| {
             frame.revision == revision && frame.step == 1
         });
-        // However slow the machine is, a piece is done in time in the end.
+        // The wait grows, so that even on a slow machine a piece is eventually done in time.
         std::thread::sleep(Duration::from_millis(100 + 2 * revision));
         if let Some(study) = worker.take_study() {
             assert!(study.progress() >= last);

@@ -1,4 +1,4 @@
-//! One export of the list: its frames, then its video.
+//! One export in the list: its frames, then its video.
 
 use std::path::{Path, PathBuf};
 
@@ -16,26 +16,26 @@ use crate::ui::upload::whole;
 use crate::words::counted;
 use crate::worker::ExportState;
 
-/// An export that was ordered.
+/// An export in the list.
 pub struct Entry {
-    /// What it is called by the worker.
+    /// The worker's id of this export.
     pub id: u64,
-    /// What it is called here.
+    /// The name shown in the list.
     name: String,
-    /// What it was ordered with, until it is over.
+    /// The order it was started from; `None` once the export is over.
     order: Option<ExportOrder>,
-    /// The video that follows its frames, if one shall.
+    /// The video made after the frames, if any.
     video: Option<VideoMaker>,
-    /// Where its frames are: their folder, and their names and ending.
+    /// The folder of the frames, and their name pattern with file extension.
     files: (PathBuf, String),
-    /// The first and the last of them.
+    /// The first and the last frame number.
     frames: (u64, u64),
-    /// A small picture of the frame that was written last, and how many were before it.
+    /// Thumbnail of the last frame written, with the value of `done.written` it was made for.
     thumb: Option<(usize, TextureHandle)>,
 }
 
 impl Entry {
-    /// What was ordered, as these frames.
+    /// Creates the entry of an order whose frames are `sequence`.
     pub fn new(id: u64, order: ExportOrder, sequence: Sequence) -> Self {
         let (video, files) = (order.settings.video(&sequence), files_of(&sequence));
         let frames = ends_of(&sequence);
@@ -51,12 +51,12 @@ impl Entry {
         }
     }
 
-    /// Whether nothing more will happen to it.
+    /// Returns whether the export has ended, video included.
     pub fn is_over(&self) -> bool {
         self.order.is_none()
     }
 
-    /// What it does after its frames, in words; `None` if nothing more will happen.
+    /// Describes what follows the frames, in words; `None` if the export is over.
     pub fn describe_rest(&self) -> Option<String> {
         self.order.as_ref()?;
         let Some(video) = &self.video else {
@@ -69,12 +69,13 @@ impl Entry {
         Some(format!("video {done}/{}", video.frames()))
     }
 
-    /// Whether its frames are files of the same names, whichever.
+    /// Returns whether its frames use the same folder and name pattern, whatever their numbers.
     pub fn writes_files_of(&self, sequence: &Sequence) -> bool {
         self.files == files_of(sequence)
     }
 
-    /// Whether it goes on and writes files that this would write as well, with this video.
+    /// Returns whether this export is still running and writes files that the given frames or video would write as
+    /// well.
     pub fn is_in_the_way_of(&self, sequence: &Sequence, video: Option<&Path>) -> bool {
         let frames = ends_of(sequence);
         let meets = self.frames.0 <= frames.1 && frames.0 <= self.frames.1;
@@ -83,8 +84,8 @@ impl Entry {
         !self.is_over() && (has_video || meets && self.writes_files_of(sequence))
     }
 
-    /// Goes on to what is next, for what its frames are now; `None` if they were given up. The order, if it
-    /// ended without being finished.
+    /// Advances to the next step. `state` is the worker's state of the frames, `None` if they were cancelled.
+    /// Returns the order if the export failed.
     pub fn update(
         &mut self,
         state: Option<&ExportState>,
@@ -150,14 +151,14 @@ impl Entry {
         }
     }
 
-    /// There is nothing left of it to take up.
+    /// Marks the export as over; nothing is left to resume.
     fn end(&mut self) {
         if let Some(order) = self.order.take() {
             order.end();
         }
     }
 
-    /// Draws its row; opens its folder if that is asked for.
+    /// Draws the export's row; opens its folder if the user asks for that.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -185,7 +186,7 @@ impl Entry {
 
     fn show_thumb(&mut self, ui: &mut Ui, state: &ExportState) {
         let Some(image) = &state.last else {
-            // Its room: what is beside it does not move when it comes.
+            // Reserve the space, so that the rest of the row does not move when the picture appears.
             ui.allocate_space(vec2(THUMB, THUMB));
             return;
         };
@@ -205,13 +206,13 @@ impl Entry {
     }
 }
 
-/// The first and the last frame of a sequence.
+/// The first and the last frame number of a sequence.
 fn ends_of(sequence: &Sequence) -> (u64, u64) {
     let first = sequence.frames.iter().next().unwrap_or(1);
     (first, sequence.frames.last().unwrap_or(first))
 }
 
-/// Where the frames of a sequence are: their folder, and their names and ending.
+/// The folder of a sequence's frames, and their name pattern with file extension.
 fn files_of(sequence: &Sequence) -> (PathBuf, String) {
     let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());
     (absolute(&sequence.folder), names)

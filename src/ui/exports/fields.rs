@@ -1,4 +1,4 @@
-//! What is asked of an export.
+//! Export settings, and their fields in the window.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,18 +24,18 @@ use crate::ui::theme::ROW;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;
-/// No video, as it is offered and kept.
+/// The word for "no video" in the window and in stored settings.
 const NO_VIDEO: &str = "none";
 
-/// What a scene asks for itself.
+/// The settings that follow from the scene itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Own {
-    /// How long its animation is.
+    /// Length of its animation.
     #[serde(default)]
     seconds: f64,
     size: (u32, u32),
     fps: f64,
-    /// How its edges are smoothed; older settings do not say.
+    /// Its antialiasing; absent from settings stored by older versions.
     #[serde(with = "crate::scene::method", default = "usual_sampling")]
     antialias: Sampling,
 }
@@ -45,7 +45,7 @@ fn usual_sampling() -> Sampling {
 }
 
 impl Own {
-    /// All frames at a rate, as they are typed.
+    /// The range of all frames at a frame rate, in the notation of the field.
     fn frames(&self, fps: f64) -> String {
         match Animation::frames_in(self.seconds, fps) {
             1 => "1".to_owned(),
@@ -54,24 +54,24 @@ impl Own {
     }
 }
 
-/// What is asked for.
+/// The settings of an export.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Where to.
+    /// The folder of the frames, as typed.
     pub folder: String,
     frames: String,
     name: String,
-    /// What the frames are.
+    /// File format of the frames.
     pub format: Format,
-    /// How wide they are, in pixels.
+    /// Width of the frames in pixels.
     pub width: u32,
-    /// How high.
+    /// Height of the frames in pixels.
     pub height: u32,
-    /// Whether width and height are set each by itself, in another shape than the scene's.
+    /// Whether width and height are set independently, instead of keeping the scene's aspect ratio.
     #[serde(default)]
     is_free: bool,
     fps: f64,
-    /// What the scene asked for when the settings were made.
+    /// The scene's own settings when these were made.
     own: Own,
     #[serde(with = "crate::scene::method")]
     antialias: Sampling,
@@ -80,7 +80,7 @@ pub struct Settings {
     pub video: Option<Video>,
 }
 
-/// A video by its ending.
+/// The file extension of a video, or [`NO_VIDEO`].
 fn video_word(video: Option<Video>) -> &'static str {
     video.map_or(NO_VIDEO, Video::ending)
 }
@@ -99,7 +99,7 @@ fn read_video<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Video>, D::Er
 }
 
 impl Settings {
-    /// The same files, wherever they go and whatever they are called.
+    /// The same settings without folder and file names, to compare what the files would contain.
     pub fn unnamed(&self) -> Self {
         let (folder, name) = (String::new(), String::new());
         Self {
@@ -109,10 +109,10 @@ impl Settings {
         }
     }
 
-    /// What an editor's scene asks for.
+    /// The default settings for the editor's scene.
     pub fn of(editor: &Editor) -> Self {
         let scene = editor.scene();
-        // Where the program works is not said: it is the same for every file there.
+        // A path below the working directory is shown relative to it.
         let here = std::env::current_dir().unwrap_or_default();
         let folder = editor.path().and_then(Path::parent).unwrap_or(&here);
         let folder = folder.strip_prefix(&here).unwrap_or(folder);
@@ -138,14 +138,15 @@ impl Settings {
         }
     }
 
-    /// The same with a folder that is found from everywhere.
+    /// The same settings with an absolute folder.
     pub fn at_home(self) -> Self {
         let folder = absolute(&typed_path(&self.folder));
         let folder = folder.display().to_string();
         Self { folder, ..self }
     }
 
-    /// The same for a scene that asks for `fresh` now: what was the scene's own is so again.
+    /// Adapts the settings to a scene whose default settings are `fresh`: those that equalled the scene's old ones
+    /// follow it, the others stay.
     pub fn for_scene(&self, fresh: Self) -> Self {
         let mut settings = self.clone();
         settings.own = fresh.own;
@@ -166,12 +167,12 @@ impl Settings {
         settings
     }
 
-    /// Whether all frames are asked for, however many that are.
+    /// Returns whether all frames are exported, however many there are.
     fn has_all_frames(&self) -> bool {
         self.frames == self.own.frames(self.fps)
     }
 
-    /// Another width and height; the one that was not changed follows, if it is not free.
+    /// Sets the size; unless `is_free`, the side that was not changed follows in the scene's aspect ratio.
     fn set_size(&mut self, (width, height): (u32, u32)) {
         let before = (self.width, self.height);
         (self.width, self.height) = (width, height);
@@ -186,13 +187,13 @@ impl Settings {
         }
     }
 
-    /// How high a picture of the scene's shape is that is so wide.
+    /// The height that belongs to a width in the scene's aspect ratio.
     fn height_of(&self, width: u32) -> u32 {
         let (wide, high) = self.own.size;
         scaled(width, high, wide)
     }
 
-    /// Another rate; all frames stay all.
+    /// Sets the frame rate; the range is adjusted if it covered all frames.
     fn set_fps(&mut self, fps: f64) {
         let has_all_frames = self.has_all_frames();
         self.fps = fps;
@@ -201,7 +202,7 @@ impl Settings {
         }
     }
 
-    /// What an export of a document is called.
+    /// The name of an export of a document.
     pub fn describe(&self, title: &str) -> String {
         let Self {
             frames,
@@ -215,7 +216,7 @@ impl Settings {
         format!("{title} · {frames} · {width}×{height} · {ending}{video}")
     }
 
-    /// The sequence, with the scene as it is now.
+    /// The frame sequence of these settings for a scene.
     pub fn sequence(&self, scene: &Scene) -> Result<Sequence, SettingsError> {
         let mut scene = scene.clone();
         (scene.render.width, scene.render.height) = (self.width, self.height);
@@ -235,7 +236,7 @@ impl Settings {
         Ok(sequence)
     }
 
-    /// Where the video is to be that follows the frames.
+    /// The path and kind of the video made after the frames, if any.
     pub fn video(&self, sequence: &Sequence) -> Option<(PathBuf, Video)> {
         let video = self.video?;
         let folder = absolute(&sequence.folder);
@@ -246,36 +247,36 @@ impl Settings {
     }
 }
 
-/// A side, times one number and through another.
+/// `side * times / through`, rounded, within the limits of a picture's side.
 fn scaled(side: u32, times: u32, through: u32) -> u32 {
     let length = f64::from(side) * f64::from(times) / f64::from(through);
     (length.round() as u32).clamp(1, MAX_SIDE)
 }
 
-/// Why nothing can be exported with these settings.
+/// Why these settings cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum SettingsError {
-    /// The scene means nothing with this size or rate.
+    /// The scene is not valid with this size or frame rate.
     #[error("{}", .0.sentence)]
     Scene(Problem),
-    /// The frames are no set of frames.
+    /// The text is not a list of frames.
     #[error(transparent)]
     Frames(#[from] FramesError),
-    /// The name has no place for a number.
+    /// The name pattern has no placeholder for the frame number.
     #[error(transparent)]
     Pattern(#[from] PatternError),
-    /// The animation is shorter.
+    /// The animation has no such frames.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
-    /// The video holds no such frames.
+    /// This kind of video cannot hold these frames.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// There is nowhere to write to.
+    /// No folder is given.
     #[error("choose a folder for the frames")]
     NoFolder,
 }
 
-/// Settings that go together.
+/// Buttons for sets of settings that belong together.
 pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
     ui.horizontal(|ui| {
         ui.weak("Presets");
@@ -305,7 +306,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         ] {
             if ui.button(name).hint(hint).clicked() {
                 settings.format = format;
-                // What sorts by name plays in order; the original program did not fill up.
+                // Zero-padded names sort in playback order; the original program did not pad its numbers.
                 let is_original = format == Format::Ppm;
                 let name = if is_original {
                     "rayTrace%d"
@@ -321,7 +322,7 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
     });
 }
 
-/// The rows of the window.
+/// The rows of the settings grid.
 pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
     ui.weak("folder");
     ui.horizontal(|ui| folder(ui, settings, out));

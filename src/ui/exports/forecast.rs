@@ -1,4 +1,4 @@
-//! What an export will take: frames, time, room on the disk.
+//! Estimates of an export: frames to make, time, disk space.
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -16,67 +16,68 @@ use crate::ui::status::time_in_words;
 use crate::words::counted;
 use crate::worker::Background;
 
-/// Bytes of a PNG for each of a PPM, about, where no picture says it.
+/// Approximate size of a PNG relative to a PPM, used until it is measured on a picture.
 const PNG_SHARE: f64 = 0.35;
-/// Bytes of an EXR for each of its numbers as they are in memory, about.
+/// Approximate size of an EXR relative to its channels in memory (32-bit floats).
 const EXR_SHARE: f64 = 0.6;
 
-/// Most pixels of the frame that is traced to see how long one takes; fewer where they would take more than a second.
+/// Maximum pixels of the frame that is traced to measure the time per frame; fewer if they would take more than a
+/// second.
 const MEASURED: f64 = 1.5e6;
-/// The fewest.
+/// Minimum pixels of that frame.
 const LEAST: f64 = 4096.0;
-/// What takes no longer, in seconds, is traced twice.
+/// If [`LEAST`] pixels take less than this, in seconds, the measurement is repeated.
 const SHORT: f64 = 2e-3;
 
-/// Frames of a sequence that are not in their folder as they should be.
+/// Frames of a sequence that are missing from their folder or differ from what they should be.
 #[derive(Default)]
 struct Missing {
-    /// How many.
+    /// Their number.
     count: usize,
-    /// How many of them replace other files.
+    /// The number of them that replace other files.
     replaced: usize,
-    /// Whether the video replaces another file.
+    /// Whether the video replaces an existing file.
     has_video: bool,
-    /// Whether the last frame shows what the first does.
+    /// Whether the last frame shows the same as the first.
     is_loop: bool,
 }
 
-/// What was measured on the picture on screen, and on a frame.
+/// Measurements on the viewport's picture and on one frame.
 #[derive(Default)]
 struct Speed {
-    /// Bytes of a PNG for each of a PPM.
+    /// Size of a PNG relative to a PPM.
     png_share: Option<f64>,
-    /// Seconds that a frame takes.
+    /// Seconds per frame.
     frame: Option<f64>,
-    /// Seconds that making the video takes.
+    /// Seconds to encode the video.
     video: Option<f64>,
 }
 
-/// What is known of an export that is asked for. It is found out on other threads.
+/// Estimates for the current export settings, computed on other threads.
 #[derive(Default)]
 pub struct Forecast {
-    /// What was looked for in the folder: these settings, at this revision of the scene, after so many exports.
+    /// The settings, the scene's revision and the number of ended exports that the folder was last examined for.
     sought: Option<(Settings, u64, usize)>,
     looking: Background<Result<Missing, String>>,
     found: Option<Result<Missing, String>>,
-    /// Which picture is measured: its revision and width; and for which export.
+    /// Revision and width of the picture that is measured, and the export settings it is measured for.
     subject: Option<(u64, usize, Settings)>,
     measuring: Background<Speed>,
     sample: Speed,
 }
 
 impl Forecast {
-    /// Whether something is being found out.
+    /// Returns whether anything is still being computed.
     pub fn is_busy(&self) -> bool {
         self.looking.is_awaited() || self.measuring.is_awaited()
     }
 
-    /// The folder is going to change.
+    /// Forgets what is known about the folder, as its content is about to change.
     pub fn forget_folder(&mut self) {
         (self.sought, self.found) = (None, None);
     }
 
-    /// Takes up what was found out.
+    /// Takes over results that have arrived.
     pub fn update(&mut self) {
         if let Some(answer) = self.looking.take() {
             self.found = Some(answer.unwrap_or_else(|no_answer| Err(no_answer.to_string())));
@@ -86,7 +87,8 @@ impl Forecast {
         }
     }
 
-    /// Looks what is in the folder already; `ended` counts the exports that may have changed it.
+    /// Examines what is already in the folder; `ended` is the number of exports that have ended and may have
+    /// changed it.
     pub fn look(
         &mut self,
         (settings, sequence): (&Settings, &Sequence),
@@ -112,7 +114,7 @@ impl Forecast {
         self.looking = Background::start("glint-look", look);
     }
 
-    /// Measures how large and how slow to pack frames like the finished picture on screen are.
+    /// Measures the size and the encoding time of frames, taking the finished picture on screen as typical of them.
     pub fn measure(
         &mut self,
         (settings, sequence): (&Settings, &Sequence),
@@ -120,7 +122,7 @@ impl Forecast {
         pictures: &Pictures,
     ) {
         let frame = pictures.whole(editor);
-        // A picture of 64 pixels says little of larger ones, and there is no hurry while it plays.
+        // A picture of 64 pixels says little about larger ones, and during playback the estimate is not urgent.
         let is_meant = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
         let Some(frame) = frame.filter(|_| is_meant && !self.measuring.is_awaited()) else {
             return;
@@ -136,7 +138,7 @@ impl Forecast {
         }
     }
 
-    /// In words.
+    /// Describes the estimate in words.
     pub fn describe(&self, settings: &Settings, sequence: &Sequence) -> String {
         let total = sequence.frames.count();
         let (missing, what) = match &self.found {
@@ -188,7 +190,7 @@ impl Forecast {
         format!("{what}{frames}{}", video.unwrap_or_default())
     }
 
-    /// Bytes of a pixel.
+    /// Bytes per pixel of a file.
     fn bytes(&self, format: Format) -> f64 {
         match format {
             Format::Ppm => 3.0,
@@ -199,7 +201,7 @@ impl Forecast {
 }
 
 impl Missing {
-    /// In words, of so many frames in all.
+    /// Describes the missing frames, out of `total`.
     fn describe(&self, total: usize) -> String {
         let stay = match total - self.count {
             0 => String::new(),
@@ -216,13 +218,13 @@ impl Missing {
 }
 
 impl Speed {
-    /// Of an export whose frames are like an image.
+    /// Measures for an export whose frames resemble `image`.
     fn of(image: &Image, sequence: &Sequence, video: Option<Video>) -> Self {
         let pixels = image.pixels.len().max(1) as f64;
         let mut file = Cursor::new(Vec::new());
         let since = Instant::now();
         let encoded = image.encode(Format::Png, &mut file);
-        // On one thread, while others trace.
+        // Encoding takes one thread, while the others trace.
         let packing = since.elapsed().as_secs_f64() / pixels / Threads::available() as f64;
         let packing = match sequence.format {
             Format::Ppm => 0.0,
@@ -242,8 +244,8 @@ impl Speed {
     }
 }
 
-/// Seconds that tracing a frame takes, once what all have in common is planned: the one in the middle, in its size or, where
-/// that would take long, in a smaller one.
+/// Seconds to trace one frame, after planning what all frames share: the middle one, in its own size or, if that
+/// would take long, in a smaller one.
 fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
     let (width, height) = sequence.size();
     let whole = f64::from(width) * f64::from(height);
@@ -261,10 +263,10 @@ fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
     let first = frames.next()?;
     let next = frames.next().unwrap_or(first);
     seconds_of(first, LEAST)?;
-    // Mostly what each frame has to plan by itself.
+    // Mostly the planning that each frame needs.
     let least = seconds_of(next, LEAST)?;
     let most = (LEAST / least).clamp(LEAST, MEASURED).min(whole);
-    // A small size may be slow by chance, and is once more where it costs little.
+    // One short measurement may be slow by chance, so it is repeated where that is cheap.
     let again = (least < SHORT).then(|| seconds_of(first, most)).flatten();
     let seconds = seconds_of(next, most)?;
     let seconds = again.map_or(seconds, |again| again.min(seconds));
@@ -273,7 +275,7 @@ fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
 }
 
 fn missing(sequence: &Sequence) -> Result<Missing, String> {
-    // A folder that is not there has no frames; looking must not make it.
+    // A missing folder holds no frames; examining it must not create it.
     if !sequence.folder.exists() {
         let count = sequence.frames.count();
         return Ok(Missing {

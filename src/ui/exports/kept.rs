@@ -1,4 +1,4 @@
-//! What was asked of exports, for the next time.
+//! Export settings kept between runs.
 
 use std::path::{Path, PathBuf};
 
@@ -7,46 +7,46 @@ use serde::{Deserialize, Serialize};
 use super::fields::Settings;
 use crate::editor::Editor;
 
-/// Documents whose settings are kept from one run to the next.
+/// Maximum number of documents whose settings are kept from one run to the next.
 const MOST_KEPT: usize = 32;
 
-/// The document that settings belong to.
+/// The document that export settings belong to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SettingsOwner {
-    /// One with a file.
+    /// A document with a file.
     File(PathBuf),
-    /// One without, see [`Editor::documents`].
+    /// A document without a file, identified by [`Editor::documents`].
     Unnamed(u64),
 }
 
 impl SettingsOwner {
-    /// That of what is edited.
+    /// The document that is open in the editor.
     pub fn of(editor: &Editor) -> Self {
         let path = editor.path().map(Path::to_owned);
         path.map_or(Self::Unnamed(editor.documents()), Self::File)
     }
 }
 
-/// What was asked for last, for each document, the newest last.
+/// The last export settings of each document, newest last.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct KeptSettings(Vec<(SettingsOwner, Settings)>);
 
 impl KeptSettings {
-    /// Puts settings away, for the next time that their document is exported.
+    /// Stores the settings for the next export of their document.
     pub fn keep(&mut self, owner: SettingsOwner, settings: Settings) {
-        // The next program may run elsewhere.
+        // The next run may start in another working directory.
         let settings = settings.at_home();
         self.0.retain(|(other, _)| *other != owner);
         self.0.push((owner, settings));
     }
 
-    /// What was asked for last of this document.
+    /// The last settings of this document.
     pub fn of(&self, owner: &SettingsOwner) -> Option<&Settings> {
         let found = self.0.iter().find(|(of, _)| of == owner);
         found.map(|(_, settings)| settings)
     }
 
-    /// Those of documents with a file, which the next run can know again.
+    /// The settings of documents with a file, which the next run can recognize.
     pub fn named(&self) -> Self {
         let is_named =
             |(owner, _): &&(SettingsOwner, Settings)| matches!(owner, SettingsOwner::File(_));
@@ -70,7 +70,7 @@ mod tests {
             let mut kept = KeptSettings::default();
             let owner = SettingsOwner::File("/a/demo.ron".into());
             kept.keep(owner.clone(), settings.clone());
-            // As the window keeps what it remembers.
+            // The format in which the window stores its state.
             let text = ron::to_string(&kept).expect("a text");
             assert!(text.contains(&format!("video:\"{word}\"")), "{text}");
             let kept: KeptSettings = ron::from_str(&text).expect("the same");

@@ -1,4 +1,4 @@
-//! Exporting the animation: what, where to and how, and how far the exports are.
+//! Export of the animation: the settings window, and the list of exports with their progress.
 
 mod fields;
 
@@ -38,53 +38,54 @@ use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
 use crate::ui::prompts::primary;
 
-/// What is left free below the list of exports, in points.
+/// Space left free below the list of exports, in points.
 const MARGIN: f32 = 2.0 * GRID;
-/// The least height of the list, in points.
+/// Minimum height of the list, in points.
 const LEAST_LIST: f32 = 120.0;
 
-/// Settings on the screen.
+/// The settings shown in the open window.
 struct Shown {
     /// See [`Editor::documents`].
     document: u64,
-    /// The scene that the settings know.
+    /// The revision of the scene that the settings were last matched to.
     revision: u64,
     owner: SettingsOwner,
     settings: Settings,
 }
 
-/// The window and its exports.
+/// The export window and its exports.
 #[derive(Default)]
 pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
-    /// Where it is on the screen, if it is shown.
+    /// Rectangle of the window on the screen while it is shown.
     place: Option<Rect>,
-    /// The folder of the program's data, if there is one.
+    /// The program's data folder, if there is one.
     folder: Option<PathBuf>,
-    /// What is asked for.
+    /// The current settings while the window is open.
     shown: Option<Shown>,
     kept: KeptSettings,
-    /// What was asked for last while a document was open, which may be saved under another name since.
+    /// The document shown when the window was last closed, and its settings. Kept apart from `kept` because the
+    /// document may since have been saved under another name.
     last: Option<(u64, Settings)>,
-    /// What was ordered and is listed.
+    /// The listed exports.
     entries: Vec<Entry>,
-    /// What ended without being finished.
+    /// Exports that ended without being finished.
     interrupted: Vec<ExportOrder>,
-    /// The frames that were asked for last, with what, of which scene; or why there are none.
+    /// Cached frame sequence, or why there is none, with the settings and the scene it was made from.
     sequence: Option<(Settings, Arc<Scene>, Result<Sequence, String>)>,
-    /// What is known of what is asked for.
+    /// Estimates for the current settings.
     forecast: Forecast,
-    /// Exports that have ended, of all.
+    /// Number of exports that have ended so far.
     ended: usize,
 }
 
 impl Exports {
-    /// With what was asked for before, and what programs that have ended left in the folder of the program's
-    /// data.
+    /// Starts with the settings kept by the previous run, and lists the unfinished exports that ended programs left
+    /// in the data folder.
     pub fn new(folder: Option<PathBuf>, kept: KeptSettings, editor: &mut Editor) -> Self {
         let interrupted = folder.as_deref().map_or(Vec::new(), ExportOrder::left_in);
-        // What failed has said so.
+        // Exports that failed have already reported it.
         let news = || interrupted.iter().filter(|order| order.why.is_none());
         if let Some(order) = news().next() {
             let more = match news().count() {
@@ -104,7 +105,7 @@ impl Exports {
         }
     }
 
-    /// The settings of all documents with a file, for the next run.
+    /// The settings of all documents that have a file, to be kept for the next run.
     pub fn kept_settings(&mut self) -> KeptSettings {
         if let Some(shown) = &self.shown {
             let (owner, settings) = (shown.owner.clone(), shown.settings.clone());
@@ -113,21 +114,21 @@ impl Exports {
         self.kept.named()
     }
 
-    /// The folder that was chosen.
+    /// Sets the folder that the user chose in the dialog.
     pub fn choose_folder(&mut self, folder: &Path) {
         if let Some(Shown { settings, .. }) = &mut self.shown {
             settings.folder = folder.display().to_string();
         }
     }
 
-    /// Tells of exports that have ended, and makes their videos.
+    /// Updates the listed exports: reports those that have ended, and starts their videos.
     pub fn update(&mut self, editor: &mut Editor, pictures: &Pictures) {
         let (states, ended) = (pictures.worker().exports(), self.ended);
         for entry in &mut self.entries {
             let state = states.iter().find(|state| state.id == entry.id);
             let was_over = entry.is_over();
             if let Some(left) = entry.update(state, editor) {
-                // It is listed with what can be taken up.
+                // It is listed as interrupted, from where it can be resumed.
                 pictures.worker().forget_export(entry.id);
                 self.interrupted.push(left);
             }
@@ -141,11 +142,11 @@ impl Exports {
             .retain(|entry| is_listed(entry) || !entry.is_over());
     }
 
-    /// What is going on, in words; `None` if nothing is.
+    /// Describes the running export in words; `None` if there is none.
     pub fn describe(&self, pictures: &Pictures) -> Option<String> {
         let states = pictures.worker().exports();
         let going = || states.iter().filter(|state| state.ended.is_none());
-        // One that waits is not what is going on.
+        // Prefer an export that is not paused.
         let at_work = going().find(|state| !state.is_paused);
         let Some(state) = at_work.or_else(|| going().next()) else {
             return self.entries.iter().find_map(Entry::describe_rest);
@@ -163,12 +164,12 @@ impl Exports {
         Some(format!("export {done}/{}{left}{more}", state.done.total))
     }
 
-    /// Where the window is on the screen, if it is shown.
+    /// The rectangle of the window on the screen, if it is shown.
     pub fn place(&self) -> Option<Rect> {
         self.place
     }
 
-    /// Whether something of them is not over yet.
+    /// Returns whether any export or estimate is still in progress.
     pub fn is_busy(&self, pictures: &Pictures) -> bool {
         pictures.worker().is_exporting()
             || self.entries.iter().any(|entry| !entry.is_over())
@@ -203,7 +204,7 @@ impl Exports {
                 let room = ctx.content_rect().bottom() - ui.cursor().top() - MARGIN;
                 let room = room.max(LEAST_LIST);
                 let list = ScrollArea::vertical().max_height(room);
-                // The window itself gives it less.
+                // Otherwise the auto-sized window would give the list less height.
                 let list = list.min_scrolled_height(room);
                 list.show(ui, |ui| {
                     self.show_list(ui, editor, pictures);
@@ -215,14 +216,14 @@ impl Exports {
         if !self.is_open
             && let Some(shown) = self.shown.take()
         {
-            // Nobody asks what it finds out.
+            // The results of the estimate are no longer needed.
             (self.forecast, self.sequence) = (Forecast::default(), None);
             self.last = Some((shown.document, shown.settings.clone()));
             self.kept.keep(shown.owner, shown.settings);
         }
     }
 
-    /// The settings that were put away, for the scene as it is now.
+    /// Returns the stored settings of the open document, matched to the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
         let (fresh, owner) = (Settings::of(editor), SettingsOwner::of(editor));
         let last = self.last.as_ref();
@@ -297,7 +298,8 @@ impl Exports {
         });
     }
 
-    /// The frames that are asked for; of large scenes they are not made anew in every frame of the window.
+    /// Returns the frame sequence of the settings. It is cached, as making it anew in every UI frame is slow for
+    /// large scenes.
     fn sequence(&mut self, settings: &Settings, scene: &Arc<Scene>) -> Result<Sequence, String> {
         let known = self.sequence.take();
         let known = known.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
@@ -309,14 +311,14 @@ impl Exports {
         sequence.clone()
     }
 
-    /// Whether such files are ordered: two exports would replace each other's.
+    /// Returns whether a listed export writes the same files: the two would overwrite each other's.
     fn is_making(&self, settings: &Settings, sequence: &Sequence) -> bool {
         let video = settings.video(sequence).map(|(path, _)| path);
         let mut entries = self.entries.iter();
         entries.any(|entry| entry.is_in_the_way_of(sequence, video.as_deref()))
     }
 
-    /// Puts an order into the queue.
+    /// Queues an export.
     fn begin(
         &mut self,
         order: ExportOrder,
@@ -329,14 +331,14 @@ impl Exports {
         match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
                 let replaced = self.entries.iter();
-                // They may not be there any more.
+                // Their files may be replaced by the new export.
                 let replaced =
                     replaced.filter(|entry| entry.is_over() && entry.writes_files_of(&sequence));
                 replaced.for_each(|entry| pictures.worker().forget_export(entry.id));
                 self.entries.push(Entry::new(id, order, sequence));
             }
             Err(error) => {
-                // A folder that is not there now may be there later.
+                // Listed as interrupted, as a missing folder may reappear later.
                 let why = error.to_string();
                 editor.report_error_in(EXPORT, why.clone());
                 self.interrupted.push(order.failed(why));
@@ -354,7 +356,7 @@ impl Exports {
         }
     }
 
-    /// What ended without being finished.
+    /// Lists the exports that ended without being finished.
     fn show_interrupted(&mut self, ui: &mut Ui, editor: &mut Editor, pictures: &Pictures) {
         let mut resumed = None;
         let mut removed = None;
@@ -393,7 +395,7 @@ impl Exports {
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
             if self.interrupted.iter().all(|order| order.why.is_none()) {
-                // What was wrong with it is over.
+                // No failed export is left: clear the error messages.
                 editor.begin(EXPORT);
             }
         }

@@ -1,5 +1,4 @@
-//! What is needed to take an export up again, kept on disk until it has ended: a program that is killed
-//! forgets nothing of it.
+//! The data needed to resume an export, kept on disk until it has ended, so that a killed program loses none of it.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,40 +9,40 @@ use crate::export::Sequence;
 use crate::scene::{Document, Leftover, Recovery, Scene};
 use crate::worker::Background;
 
-/// What messages about exports are about.
+/// Topic of messages about exports.
 pub const EXPORT: &str = "export";
-/// What messages are about that tell of exports that end with the program.
+/// Topic of messages about orders that could not be written to disk, so that these exports cannot be resumed.
 pub const UNKEPT: &str = "Exports that are not kept";
 
-/// First line of the scene that is kept: what is asked for follows.
+/// Prefix of the first line of a stored scene; the export settings follow it as JSON.
 const MARK: &str = "// export: ";
-/// The folder of these files, in that of the program's data.
+/// Subfolder of the data folder for these files.
 const FOLDER: &str = "exports";
 
-/// An export that was asked for.
+/// An export that the user ordered.
 pub struct ExportOrder {
-    /// What it is called.
+    /// Name shown in the list.
     pub name: String,
-    /// What is asked for.
+    /// The export settings.
     pub settings: Settings,
-    /// Why it ended without being finished, if the program lived on.
+    /// Why it ended unfinished, if it did so while the program was running.
     pub why: Option<String>,
-    /// The scene as it was then.
+    /// The scene at the time of the order.
     pub scene: Arc<Scene>,
-    /// Where it is kept; nowhere, if the system gives no place.
+    /// The file it is kept in; `None` if the system offers no place.
     place: Option<Arc<Recovery>>,
-    /// The text on its way there; why it did not arrive.
+    /// The write to disk in progress; its error is a message.
     writing: Background<Result<(), String>>,
 }
 
 impl ExportOrder {
-    /// An order for the scene of an editor, kept in the folder of the program's data.
+    /// Creates an order for the editor's scene, kept in the program's data folder.
     pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
-        // The next program may run elsewhere.
+        // The next run may start in another working directory.
         let settings = settings.at_home();
         let place = folder.map(|folder| Recovery::new(&folder.join(FOLDER)));
         let place = place.map(|place| place.map(Arc::new).map_err(|error| error.to_string()));
-        // With the triangles of its meshes: their files may be others when it goes on.
+        // Mesh triangles are stored inline: the mesh files may have changed when the export is resumed.
         let document = Document::of(editor.scene().taken_in());
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
@@ -65,14 +64,15 @@ impl ExportOrder {
         }
     }
 
-    /// Why it cannot be kept, once that is known: if the program is killed, it has to be asked for again.
+    /// Returns why the order could not be kept on disk, once that is known: if the program is then killed, the user
+    /// has to order the export again.
     pub fn take_problem(&mut self) -> Option<String> {
         let kept = self.writing.take()?;
         kept.unwrap_or_else(|no_answer| Err(no_answer.to_string()))
             .err()
     }
 
-    /// What ended programs have left unfinished.
+    /// Returns the unfinished orders of ended programs.
     pub fn left_in(folder: &Path) -> Vec<Self> {
         let folder = folder.join(FOLDER);
         let (mut found, mut unread) = (Vec::new(), Vec::new());
@@ -82,14 +82,15 @@ impl ExportOrder {
         {
             match Self::read(leftover, place) {
                 Ok(order) => found.push(order),
-                // Another version of the program may know what it means: its place is kept until all are seen.
+                // Possibly written by another version. Its lock is held until all files are seen, so that it is not
+                // found again.
                 Err(place) => unread.push(place),
             }
         }
         found
     }
 
-    /// An order that was left; its place, if it is none.
+    /// Reads a leftover order; returns its place as the error if it is not an order.
     fn read(leftover: Leftover, place: Recovery) -> Result<Self, Recovery> {
         let Leftover { document, path, .. } = leftover;
         let line = document.header.lines().next();
@@ -110,15 +111,15 @@ impl ExportOrder {
         })
     }
 
-    /// The frames, as they were asked for.
+    /// The frame sequence of the order.
     ///
     /// # Errors
-    /// [`SettingsError`], if the program has learnt since that they mean nothing.
+    /// [`SettingsError`], if this version of the program no longer accepts the settings.
     pub fn sequence(&self) -> Result<Sequence, SettingsError> {
         self.settings.sequence(&self.scene)
     }
 
-    /// The same, with why it was not finished.
+    /// The same order with the reason why it is unfinished.
     pub fn failed(self, why: String) -> Self {
         Self {
             why: Some(why),
@@ -126,9 +127,9 @@ impl ExportOrder {
         }
     }
 
-    /// There is nothing left to take up.
+    /// Removes the order from disk: nothing is left to resume.
     pub fn end(self) {
-        // What is still being written must not be there afterwards.
+        // A write still in progress would put the file back.
         self.writing.finish();
         if let Some(place) = self.place {
             place.clear();
@@ -196,7 +197,7 @@ mod tests {
             "its program still runs"
         );
         drop(order);
-        // Found, and left again.
+        // Found twice: an order that is dropped without being ended stays on disk.
         for _ in 0..2 {
             let found = ExportOrder::left_in(folder.path());
             let [order] = &found[..] else {

@@ -1,4 +1,4 @@
-//! How far an export is.
+//! Progress of an export.
 
 use egui::{Button, ProgressBar, RichText, Ui};
 
@@ -11,7 +11,7 @@ use crate::ui::theme::palette;
 use crate::words::counted;
 use crate::worker::ExportState;
 
-/// How long an export will still take; `None` before its first frame, and while it waits.
+/// Estimated seconds until an export is done; `None` before its first frame is written and while it is paused.
 pub fn seconds_left(state: &ExportState) -> Option<f64> {
     let done = state.done.so_far();
     let per_frame = state.busy.as_secs_f64() / state.done.written.max(1) as f64;
@@ -19,7 +19,7 @@ pub fn seconds_left(state: &ExportState) -> Option<f64> {
     is_known.then_some((state.done.total - done) as f64 * per_frame)
 }
 
-/// How much of an export is done, from 0 to 1, and in words.
+/// Completed fraction of an export, from 0 to 1, and its description in words.
 fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     let total = state.done.total;
     let done = state.done.so_far();
@@ -45,7 +45,7 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     (share, text)
 }
 
-/// The same for the video, when its frames are there.
+/// The same for the video, once its frames are written.
 fn video_progress(video: &VideoMaker) -> (f64, String) {
     let total = video.frames();
     let name = video.path.file_name().unwrap_or_default().to_string_lossy();
@@ -66,8 +66,8 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
     }
 }
 
-/// Draws how far an export is, and its buttons; what it waits for does not count as its time. Whether its folder shall
-/// be opened.
+/// Draws an export's progress bar and buttons. Time spent paused does not count in the estimate. Returns whether
+/// the user asked to open the folder.
 pub fn show_state(
     ui: &mut Ui,
     name: &str,
@@ -91,7 +91,7 @@ pub fn show_state(
         let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if let Some(video) = making {
-            // As while its frames were made: a click then meets nothing else now.
+            // Same layout as while the frames were made, so that a click meant for one button does not hit another.
             ui.add_enabled(false, Button::new("Pause"));
             if ui.button("Cancel").hint("Its frames stay").clicked() {
                 video.stop();

@@ -1,4 +1,4 @@
-//! A video that is made when its frames are there.
+//! Encoding of a video once its frames are exported.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -9,45 +9,45 @@ use crate::export::{Sequence, Video, VideoError};
 use crate::trace::Threads;
 use crate::worker::Background;
 
-/// Threads that make a video: half of all, as the picture on screen is traced meanwhile.
+/// Number of threads that encode a video: half of all, as the viewport is still being traced.
 pub fn video_threads() -> usize {
     (Threads::available() / 2).max(1)
 }
 
-/// What has become of a video.
+/// The progress of a video.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VideoState {
-    /// Its frames are not there yet.
+    /// Its frames are still being exported.
     Waiting,
-    /// So many of its frames are in it.
+    /// It is being encoded and has this many frames so far.
     Making(usize),
-    /// It is there.
+    /// It is finished.
     Made,
-    /// It was given up.
+    /// It was cancelled.
     Stopped,
-    /// It is not, and why.
+    /// It failed, with the reason.
     Failed(String),
 }
 
-/// Makes a video of frames when they are there.
+/// Encodes a video once its frames are exported.
 pub struct VideoMaker {
-    /// Where it goes.
+    /// Path of the video.
     pub path: PathBuf,
-    /// How far it is.
+    /// Its progress.
     pub state: VideoState,
     sequence: Sequence,
     video: Video,
     making: Background<Result<(), VideoError>>,
-    /// Since when it is made, and how long its frames have taken that are in it.
+    /// When encoding began, and how long it had taken when `done` last grew.
     since: Option<(Instant, Duration)>,
-    /// Frames that are in it.
+    /// Number of frames encoded so far.
     done: Arc<AtomicUsize>,
-    /// Whether it is not wanted any more.
+    /// Whether the user has cancelled it.
     is_stopped: Arc<AtomicBool>,
 }
 
 impl VideoMaker {
-    /// For a sequence that is being exported.
+    /// Creates a maker for the video of a sequence that is being exported.
     pub fn new(sequence: Sequence, path: PathBuf, video: Video) -> Self {
         Self {
             path,
@@ -61,12 +61,12 @@ impl VideoMaker {
         }
     }
 
-    /// How many frames it is made of.
+    /// The number of frames of the video.
     pub fn frames(&self) -> usize {
         self.sequence.frames.count()
     }
 
-    /// Seconds that are left of its making, as far as its first frames tell.
+    /// Estimated seconds left, extrapolated from the frames encoded so far.
     pub fn seconds_left(&self) -> Option<f64> {
         let (VideoState::Making(done @ 1..), Some((_, taken))) = (&self.state, self.since) else {
             return None;
@@ -75,7 +75,7 @@ impl VideoMaker {
         Some(taken.as_secs_f64() / *done as f64 * left as f64)
     }
 
-    /// Makes it, on threads of its own.
+    /// Starts encoding in the background, on separate threads.
     pub fn make(&mut self) {
         let (kind, sequence, path) = (self.video, self.sequence.clone(), self.path.clone());
         let (done, is_stopped) = (Arc::clone(&self.done), Arc::clone(&self.is_stopped));
@@ -92,12 +92,12 @@ impl VideoMaker {
         self.state = VideoState::Making(0);
     }
 
-    /// Gives it up, soon.
+    /// Asks the encoder to stop, which may take a moment.
     pub fn stop(&self) {
         self.is_stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Looks how far it is.
+    /// Updates the progress from the background task.
     pub fn update(&mut self) -> &VideoState {
         match self.making.take() {
             Some(Ok(Ok(()))) => self.state = VideoState::Made,
@@ -108,7 +108,7 @@ impl VideoMaker {
             }
             None if self.making.is_awaited() => {
                 let state = VideoState::Making(self.done.load(Ordering::Relaxed));
-                // Several come at once.
+                // The count grows by several frames at once, so the time is taken only when it changes.
                 if let Some((since, taken)) = self.since.as_mut().filter(|_| state != self.state) {
                     *taken = since.elapsed();
                 }

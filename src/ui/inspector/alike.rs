@@ -1,4 +1,4 @@
-//! A change of one thing, made to several.
+//! Applying a change of one item to several.
 
 use std::collections::BTreeSet;
 
@@ -9,11 +9,11 @@ use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
 use crate::ui::rows::{EditedPart, is_channel};
 
-/// A point of something that a change moves.
+/// A point of an item that an edit moves.
 struct MovedPoint {
     from: DVec3,
     to: DVec3,
-    /// Whether it is where that is, and not one of several corners.
+    /// Whether it is the item's only point and thus its position, not one of several corners.
     is_only: bool,
 }
 
@@ -42,8 +42,8 @@ fn moved_point(scene: &Scene, edit: &Edit) -> Option<MovedPoint> {
     }
 }
 
-/// Moves everything that is selected as what was selected last, which a change moves: together, by as much; or to the
-/// coordinates that were typed.
+/// Moves all selected items with the last one, whose point is moved by `edit`: together by the same offset, or, if
+/// not `is_together`, to the coordinates that were typed.
 fn move_all(
     scene: &Scene,
     selected: &[Item],
@@ -57,14 +57,14 @@ fn move_all(
             changed(place, point.from, point.to)
         }
     };
-    // Where it is a corner that is dragged, what has it is moved as a whole, too.
+    // If the point is one of several corners, its item is moved as a whole, too.
     let (others, own) = match selected.split_last() {
         Some((_, others)) if point.is_only => (others, Some(edit)),
         _ => (selected, None),
     };
     let edits = others.iter().filter_map(|item| {
         let object = |object: &mut Object| {
-            // Coordinates that are typed are those of one point: with several, it has no such property.
+            // Typed coordinates are those of a single point, which shapes with several points do not have.
             if is_together || object.shape.points().len() == 1 {
                 object.shape = object.shape.placed(to(object.shape.position()));
             }
@@ -76,8 +76,8 @@ fn move_all(
     Edit::Each(edits, format!("Move {} items", selected.len()))
 }
 
-/// The same change for everything that is selected, which is made of what was selected last; whether places are moved
-/// together.
+/// Returns the edit that applies a change of the last selected item to all; `is_together` says whether positions
+/// are moved by the same offset.
 pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) -> Edit {
     if let Some(point) = moved_point(scene, &edit).filter(|point| is_together || point.is_only) {
         return move_all(scene, selected, (edit, &point), is_together);
@@ -123,13 +123,13 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
     Edit::Each(edits, format!("{count} items: {field}"))
 }
 
-/// The change that gives all others what was chosen for what was selected last, which has it already.
+/// Returns the edit that gives all others the value chosen for the last selected item, which has it already.
 pub fn chosen_for_all(
     scene: &Scene,
     selected: &[Item],
     (edit, EditedPart { field, part }): (Edit, EditedPart),
 ) -> Edit {
-    // As if it had nothing there: then it is one more that changes.
+    // As if the last item had no value there, so that it counts as changed as well.
     let nothing = |own: &mut DVec3| match part {
         Some(part) => own[part] = f64::NAN,
         None => *own = DVec3::NAN,
@@ -168,7 +168,7 @@ pub fn chosen_for_all(
                     "ambient" => nothing(&mut pack.ambient),
                     "specular" => nothing(&mut pack.specular),
                     "phong" => pack.phong_exponent = f64::NAN,
-                    // Of both at once, this is shown.
+                    // The row that sets both shows the diffuse colour.
                     name if name == "diffuse" || name == BOTH.0 => nothing(&mut pack.diffuse),
                     _ => {}
                 }
@@ -179,14 +179,14 @@ pub fn chosen_for_all(
     for_all(&scene, selected, edit, false)
 }
 
-/// The packs that are selected, and those that the selected objects wear, each once.
+/// The selected color packs and those of the selected objects, each once.
 pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
     let others = selected.iter().filter(|item| item.kind != ItemKind::Light);
     let packs = others.filter_map(|item| scene.color_packs.get_index_of(item.color_pack(scene)?));
     packs.collect::<BTreeSet<_>>().into_iter()
 }
 
-/// A pack with what of another one has changed: a colour, or one channel of it.
+/// A color pack with the changes from `old` to `new` applied: a whole colour, or one channel of it.
 fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str) -> ColorPack {
     let mut pack = own.clone();
     let is_channel = is_channel(field);
@@ -198,7 +198,7 @@ fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str)
         };
     };
     if field.starts_with(BOTH.0) {
-        // Whatever it was painted in besides, as where one is changed alone.
+        // Ambient follows diffuse whatever it was before, as when a single pack is changed.
         take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
         pack.ambient = pack.diffuse;
     } else {
@@ -215,14 +215,14 @@ fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str)
     pack
 }
 
-/// Takes a property over that has changed.
+/// Copies a property if it has changed.
 fn take<T: Clone + PartialEq>(own: &mut T, old: &T, new: &T) {
     if old != new {
         own.clone_from(new);
     }
 }
 
-/// The change of an item that makes it like an object that has changed.
+/// The edit that applies the change of an object to another item.
 fn like_object(
     scene: &Scene,
     item: Item,
@@ -243,7 +243,7 @@ fn like_object(
     Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
-/// The change of an item that makes it like a light that has changed.
+/// The edit that applies the change of a light to another item.
 fn like_light(
     scene: &Scene,
     item: Item,
@@ -267,12 +267,12 @@ fn like_light(
     Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
-/// `own` with those coordinates that have changed.
+/// `own` with the coordinates that differ between `old` and `new` taken from `new`.
 fn changed(own: DVec3, old: DVec3, new: DVec3) -> DVec3 {
     DVec3::select(new.cmpne(old), new, own)
 }
 
-/// Every property of a shape by its name; one number stands for three.
+/// All properties of a shape with their names; a single number fills all three coordinates.
 pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
     let mut values = Vec::new();
     shape.clone().fields(&mut |field| {
@@ -291,7 +291,7 @@ fn value_of(value: &PropertyValue) -> DVec3 {
     }
 }
 
-/// Changes the properties of a shape that have changed from `old` to `new`, where it has them.
+/// Applies to a shape the changes from `old` to `new` of the properties that it has, too.
 fn take_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
     let (old, new) = (values(old), values(new));
     shape.fields(&mut |field| {

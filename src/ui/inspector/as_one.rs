@@ -1,14 +1,14 @@
-//! A group that is turned or stretched by the numbers of one of its members.
+//! Rotating or scaling a group through the properties of one of its members.
 
 use glam::{DQuat, DVec3};
 
 use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{Mesh, Object, Scene, Shape};
 
-/// Why a group is not stretched.
+/// Why a group cannot be stretched.
 const SHEARED: &str = "A group with parts that are turned, or no meshes, is stretched by one factor for x, y and z alone";
 
-/// What is done to all members.
+/// A transformation of all members.
 #[derive(Clone, Copy)]
 enum Change {
     Turn(DQuat),
@@ -17,7 +17,7 @@ enum Change {
 }
 
 impl Change {
-    /// What makes a mesh another one, if it is one of these.
+    /// The transformation from one mesh to another, if it is a rotation or a scaling.
     fn between(old: &Mesh, new: &Mesh) -> Option<Self> {
         if old.rotation != new.rotation {
             return Some(Self::Turn(new.orientation() * old.orientation().inverse()));
@@ -30,7 +30,8 @@ impl Change {
         }
     }
 
-    /// What becomes of a member. `None` where it would be sheared, which no shape can be.
+    /// Applies the transformation to a member, about a point. `None` if it would shear the shape, which no shape
+    /// can represent.
     fn of(self, shape: &Shape, about: DVec3) -> Option<Shape> {
         match (self, shape) {
             (Self::Turn(by), shape) => Some(shape.turned(about, by)),
@@ -55,11 +56,11 @@ impl Change {
     }
 }
 
-/// The change that turns or stretches all members of a group about the mean of their places, as `edit` does one of
-/// them: that stays where it is then, however often it is done. `None` where `edit` does neither.
+/// Returns the edit that rotates or scales all members of a group about the mean of their positions, as `edit` does
+/// one of them. The mean is unchanged by this, however often it is repeated. `None` if `edit` does neither.
 ///
 /// # Errors
-/// Some would be sheared, in words.
+/// Why it is impossible, in words: some members would be sheared.
 pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edit, &'static str>> {
     let Edit::Object(own, new, field) = edit else {
         return None;
@@ -81,7 +82,7 @@ pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edi
         if let Shape::Mesh(mesh) = &mut shape
             && index == *own
         {
-            // To the last digit what was typed.
+            // Exactly what was typed.
             (mesh.rotation, mesh.scale) = (new.rotation, new.scale);
         }
         let changed = Object {
@@ -105,7 +106,7 @@ mod tests {
 
     type Changed = Result<(Mesh, Sphere), &'static str>;
 
-    /// A box and a ball beside it, and both as they are after a change of the box.
+    /// Applies a change to a box with a ball beside it, and returns both as they are afterwards.
     fn changed(change: impl FnOnce(&mut Mesh)) -> Option<Changed> {
         let mut scene = Scene::demo();
         let mesh = Mesh {

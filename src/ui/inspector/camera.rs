@@ -1,4 +1,4 @@
-//! The camera: projection, place, angles and vectors.
+//! The properties of the camera: projection, position, angles and vectors.
 
 use egui::{Align, Id, Layout, Ui, vec2};
 
@@ -13,7 +13,7 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, FieldRows, coordinate};
 use crate::ui::theme::ROW;
 
-/// Every property of the camera.
+/// Shows every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     title(ui, icons::CAMERA, "Camera");
     let before = &editor.shown().camera;
@@ -37,7 +37,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         return out.edit(Edit::Camera(defaults, "reset"));
     }
     if camera.projection != before.projection {
-        // Things stay as large as they were, as with the keys.
+        // As with the keyboard commands, which keep the apparent size of things.
         out.commands.push(match camera.projection {
             Projection::Perspective => Command::Perspective,
             Projection::Orthographic => Command::Orthographic,
@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     bookmarks(ui, editor, out);
 }
 
-/// The views to come back to.
+/// The bookmarked views.
 fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let before = &editor.scene().bookmarks;
     if before.is_empty() {
@@ -83,7 +83,7 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// Projection, place and angles.
+/// Rows for projection, position and angles.
 pub fn place_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
     let kinds = [Projection::Perspective, Projection::Orthographic];
     rows.choice(
@@ -147,7 +147,7 @@ fn projection_rows(rows: &mut FieldRows, camera: &mut Camera) {
     }
 }
 
-/// Yaw, pitch and roll in degrees; a change rebuilds `look_at` and up from them.
+/// Rows for yaw, pitch and roll in degrees; a change recomputes `look_at` and `up` from them.
 fn angle_rows(rows: &mut FieldRows, before: Orientation, camera: &mut Camera) {
     let mut angles = before;
     let parts = [

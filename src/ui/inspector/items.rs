@@ -1,4 +1,4 @@
-//! Lights, objects and colour packs.
+//! The properties of lights, objects and color packs.
 
 use egui::{Id, Ui};
 
@@ -17,16 +17,16 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::{EditedPart, Field, FieldRows, color_names, coordinate, fraction};
 use crate::words::counted;
 
-/// Most things that are listed as wearing a pack.
+/// Maximum number of items listed as users of a color pack.
 const MOST_USERS: usize = 100;
 
-/// What the pack of something is called.
+/// Label of the row that chooses a color pack.
 pub const COLOR_PACK: &str = "color pack";
 
-/// What ambient and diffuse colour are called at once.
+/// Label of the row that sets ambient and diffuse colour together.
 pub const BOTH: (&str, [&str; 3]) = color_names!("color");
 
-/// A light and its marker. What was chosen and is what it was.
+/// Shows a light and its marker. Returns the edit of a field that the user set to the value it already has, if any.
 pub fn light(
     ui: &mut Ui,
     scene: &Scene,
@@ -85,7 +85,7 @@ pub fn light(
     None
 }
 
-/// What the marker of a light wears that has none yet: what those of others wear, a pack that is called like one, or any.
+/// The color pack for the first marker of a light: that of another marker, a pack named "light", or any.
 fn marker_pack(scene: &Scene) -> Option<&String> {
     let markers = scene
         .lights
@@ -106,7 +106,7 @@ fn length(name: &'static str, hint: &'static str, default: f64) -> Field {
     }
 }
 
-/// Degrees.
+/// A field in degrees.
 pub(super) fn angle(name: &'static str, hint: &'static str) -> Field {
     Field {
         unit: "°",
@@ -115,7 +115,7 @@ pub(super) fn angle(name: &'static str, hint: &'static str) -> Field {
     }
 }
 
-/// Degrees up to half a turn.
+/// A field in degrees, 0–180.
 fn half_turn(name: &'static str, hint: &'static str) -> Field {
     Field {
         range: 0.0..=180.0,
@@ -123,7 +123,7 @@ fn half_turn(name: &'static str, hint: &'static str) -> Field {
     }
 }
 
-/// What something is multiplied by.
+/// A field for a scale factor.
 fn factor(name: &'static str, hint: &'static str) -> Field {
     Field {
         default: 1.0,
@@ -145,8 +145,8 @@ fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
     );
 }
 
-/// An object: its shape and its pack; by itself it can be joined and taken apart besides. What was chosen and is what it
-/// was.
+/// Shows an object's shape and color pack; if it is the only one selected, also the tools to join and separate it.
+/// Returns the edit of a field that the user set to the value it already has, if any.
 pub fn object(
     ui: &mut Ui,
     scene: &Scene,
@@ -187,7 +187,7 @@ pub fn object(
     let users = count_users(ui, scene, name);
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
-        // Of several, others may share theirs.
+        // With several objects selected, the packs of the others may be shared.
         let can_be = users > 1 || !is_alone;
         let unique = ui.add_enabled(can_be, egui::Button::new("Make unique"));
         let hint = if is_alone {
@@ -202,7 +202,7 @@ pub fn object(
     chosen
 }
 
-/// What turns triangles into a mesh and back: what is shown is all that is selected.
+/// Tools that turn triangles into a mesh and back; only for a single selected object.
 fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     match shape {
         Shape::Triangle(_) => {
@@ -231,8 +231,8 @@ fn tool(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool 
     button.hint(hint).clicked()
 }
 
-/// How many things wear a pack. To count them takes a look at every object: what is dragged changes
-/// nothing about it, so it is counted when the button is up.
+/// Counts the users of a color pack. This visits every object; a drag cannot change the count, so it is not
+/// repeated while a button is down.
 fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     let id = Id::unique(("users of a pack", name));
     let known = ui.data(|data| data.get_temp::<(usize, usize)>(id));
@@ -260,7 +260,8 @@ fn shape_rows(rows: &mut FieldRows, shape: &mut Shape) {
     });
 }
 
-/// The colours of a pack. What was chosen and is what it was.
+/// Shows the colours of a color pack. Returns the edit of a field that the user set to the value it already has, if
+/// any.
 pub fn pack(
     ui: &mut Ui,
     index: usize,
@@ -277,7 +278,7 @@ pub fn pack(
         defaults.diffuse,
         &mut both,
     );
-    // Also where it is what diffuse was, and ambient another.
+    // Also if the chosen colour is what diffuse was, as ambient may have been another.
     if both != pack.diffuse || rows.chosen().is_some() {
         (pack.ambient, pack.diffuse) = (both, both);
     }
@@ -326,7 +327,7 @@ pub fn pack(
     None
 }
 
-/// What uses a pack, each a way to it.
+/// Lists the users of a color pack; a click selects one.
 pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = FieldRows::new(ui);
     rows.heading("Used by");

@@ -1,4 +1,4 @@
-//! The selected keys.
+//! The properties of the selected keys.
 
 use std::sync::Arc;
 
@@ -19,15 +19,15 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, FieldRows, coordinate, fraction};
 use crate::words::counted;
 
-/// The ways on which every value can go on.
+/// The interpolations that a key of any value can have.
 const STAYING: [Interpolation; 3] = [
     Interpolation::Smooth,
     Interpolation::Linear,
     Interpolation::Hold,
 ];
 
-/// Time, way and value of the selected key; of several, the time of the earliest, which the others follow, and way and
-/// pace of the first, which others take on.
+/// Shows time, way (interpolation), pace (easing) and value of the selected key. For several keys, the time is that
+/// of the earliest, which the others follow; way and pace are those of the first, and changes are applied to all.
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(&first) = places.first() else { return };
@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let name = if let Some(only) = only {
         animation.name_of(only)
     } else {
-        // As fine as anybody sets them.
+        // To the millisecond, finer than anyone sets them.
         let span = ((last - time) * 1e3).round() / 1e3;
         format!("{} keys in {} s", places.len(), format_number(span))
     };
@@ -61,7 +61,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     rows.number(&time_field(only.is_some()), &mut new_time);
     pace_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
-    // Of several, what all of them have may be picked for those that have not.
+    // With several keys, choosing the shown way or pace again applies it to those that differ.
     let chosen = rows.chosen().map(|chosen| chosen.field);
     let chosen = chosen.filter(|field| only.is_none() && ["way", "pace"].contains(field));
     let changed = rows.changed().or(chosen);
@@ -71,7 +71,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     } else if let Some(value) = new_value {
         out.edit(Edit::animation(value, "Key: value"));
     } else if new_pace != pace || only.is_none() && changed.is_some() {
-        // Of several, what was not changed stays as it is in each.
+        // With several keys, each keeps the part that was not changed.
         let (way, easing) = new_pace;
         let (changed, label) = if changed == Some("pace") {
             let changed = animation.with_pace(places, |(_, each)| *each = easing);
@@ -84,7 +84,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     }
 }
 
-/// What holds at the time of a key; the animation with another one, once it is changed.
+/// Rows for the value of a key. Returns the changed animation if the value was edited.
 fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> Option<Animation> {
     let Some(track) = place.track else {
         let key = animation.keys.get(place.index)?;
@@ -122,7 +122,7 @@ fn point_field(target: &Target) -> Field {
     }
 }
 
-/// Says which keys were replaced by those whose time has been changed, once that is over. Whatever is selected by then.
+/// Reports how many keys were replaced by a change of time, once it is over, whatever is selected by then.
 pub fn tell_of_moved(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
     if ui.input(|input| input.pointer.any_down()) {
         return;
@@ -134,7 +134,8 @@ pub fn tell_of_moved(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
         .extend(told_of_replaced(replaced).map(Action::Tell));
 }
 
-/// A key before its time was dragged: it replaces what it lands on, and not what it passes.
+/// The state before the time of keys was dragged: a drag replaces the keys that it ends on, not those that it
+/// passes.
 #[derive(Clone, Default)]
 struct Moved {
     animation: Arc<Animation>,
@@ -142,7 +143,7 @@ struct Moved {
     time: f64,
 }
 
-/// Moves the selected keys, of which the earliest goes to another time.
+/// Moves the selected keys so that the earliest of them is at time `to`.
 fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
@@ -154,7 +155,7 @@ fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
         places: places.clone(),
         time,
     };
-    // Of a typed time, for what is told of it in the next frame.
+    // Also stored for a typed time, which is reported on in the next frame.
     let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
     let later = to - before.time;
     let (moved, new) = before.animation.with_moved(&before.places, later, false);
@@ -162,14 +163,14 @@ fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
     out.select(new);
 }
 
-/// What is said where keys that are moved have replaced so many others.
+/// The message after moved keys have replaced `count` others, if any.
 pub fn told_of_replaced(count: usize) -> Option<String> {
     let them = if count == 1 { "it" } else { "them" };
     let keys = counted(count, "key");
     (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))
 }
 
-/// Where the key that is dragged is remembered.
+/// Where the state before a drag is stored.
 fn drag_id() -> Id {
     Id::unique("key before its time was dragged")
 }
@@ -216,7 +217,7 @@ fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpola
     );
 }
 
-/// The ways that all of these keys can go on; one of them does as `own` says. Only what has a place goes around a point.
+/// The ways that all of these keys can have; `own` is that of one of them. Only positions can orbit a point.
 pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Interpolation> {
     let tracks = &editor.scene().animation.tracks;
     let has_place = |place: &KeyPlace| {
@@ -258,10 +259,10 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// A value that can carry keys: what it is called, and what it is of each thing that has it.
+/// A value that can be keyed: its name, and the targets that have it.
 pub type Keyed = (&'static str, Vec<Target>);
 
-/// The values of these things that can carry keys.
+/// The values of these items that can be keyed.
 pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
     let [mut positions, mut rotations, mut intensities] = [const { Vec::new() }; 3];
     for item in items {
@@ -290,8 +291,8 @@ pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
     values
 }
 
-/// A button for each value that can carry keys: sets one at the playhead, for everything that has that value, or takes
-/// them away where all of it have one.
+/// Shows a button for each value that can be keyed. It sets keys at the playhead for all items with that value, or
+/// removes them if all have one there.
 pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiRequests) {
     if values.is_empty() {
         return;
@@ -322,7 +323,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiReq
                 let changed = if has_key {
                     animation.without_keys(&there)
                 } else {
-                    // What has one keeps it.
+                    // Existing keys at the playhead stay as they are.
                     let targets = targets.iter().filter(|target| key_of(target).is_none());
                     let owners = Owners::of(editor.shown(), targets.clone());
                     let value = |target| Some((target, owners.get(editor.shown(), target)?));

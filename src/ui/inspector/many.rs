@@ -1,4 +1,4 @@
-//! Several things at once: what they have in common is changed for all.
+//! The properties of several selected items: changes are made to all that have the property.
 
 use egui::{Id, Ui};
 use glam::DVec3;
@@ -18,10 +18,10 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::EditedPart;
 use crate::ui::theme::{GRID, ROW};
 
-/// Most things that are compared, or whose keys are looked at, in every frame of the window.
+/// Maximum number of items that are compared, or whose keys are examined, in every UI frame.
 const MOST: usize = 500;
 
-/// The properties of what was selected last; a change is made to all that have the property.
+/// Shows the properties of the item selected last; a change is made to all items that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let (scene, selected) = (editor.shown(), editor.selection().items());
     let group = editor.selection().group(scene);
@@ -72,7 +72,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             })
         }
     };
-    // A group stays what it is: its members are not to be in one place.
+    // Members of a group keep their own positions, rotations and so on; otherwise they would end up in one place.
     let stays = |chosen: &(Edit, EditedPart)| {
         let is_pack = matches!(chosen.0, Edit::Pack(..));
         group.is_none() || is_pack || ["radius", items::COLOR_PACK].contains(&chosen.1.field)
@@ -80,7 +80,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if let Some(chosen) = chosen.filter(stays) {
         out.edit(chosen_for_all(scene, selected, chosen));
     }
-    // A group stays what it is; and it is not the click elsewhere that ends what was typed.
+    // A group moves as a whole. Other items move together in a drag only: a click elsewhere that ends typing is
+    // none.
     let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
     for action in own.actions {
         out.actions.push(match action {
@@ -94,7 +95,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// The name of a group, which can be edited.
+/// The editable name of a group.
 fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
@@ -108,7 +109,7 @@ fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
     });
 }
 
-/// The properties of `last` that others have otherwise.
+/// The properties in which others differ from `last`.
 fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
     let selected = &selected[selected.len().saturating_sub(MOST)..];
     let mut names = match last.kind {
@@ -122,7 +123,7 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
     names
 }
 
-/// Which of these properties not all of them have in common: each with a name, and whether two have the same.
+/// The properties, each given by name and comparison, that are not the same for all.
 fn differing<T>(all: &[&T], properties: &[(&'static str, IsAlike<T>)]) -> Vec<&'static str> {
     let differ = properties.iter().filter(|(_, is_alike)| {
         let mut pairs = all.windows(2);
@@ -131,10 +132,10 @@ fn differing<T>(all: &[&T], properties: &[(&'static str, IsAlike<T>)]) -> Vec<&'
     differ.map(|(name, _)| *name).collect()
 }
 
-/// Whether two things have a property in common.
+/// Compares a property of two items.
 type IsAlike<T> = fn(&T, &T) -> bool;
 
-/// The same of the packs that are selected or worn.
+/// The properties in which the color packs that are selected or used differ.
 fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
     let packs = packs_of(scene, selected).filter_map(|place| scene.color_packs.get_index(place));
     let packs: Vec<&ColorPack> = packs.map(|(_, pack)| pack).collect();
@@ -150,7 +151,7 @@ fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
     )
 }
 
-/// The same of an object.
+/// The properties in which other objects differ from the last one.
 fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
     let of = |item: &Item| scene.objects.get(item.index);
     let Some(object) = of(&last) else {
@@ -181,7 +182,7 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
     names
 }
 
-/// The same of the lights.
+/// The properties in which the selected lights differ.
 fn light_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
     let lights: Vec<&Light> = selected
         .iter()

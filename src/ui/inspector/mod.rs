@@ -1,4 +1,4 @@
-//! The panel on the right: every property of what is selected.
+//! The inspector, the panel on the right: every property of the selection.
 
 mod title;
 
@@ -35,10 +35,10 @@ use super::theme::GRID;
 use crate::editor::{Editor, Item, ItemKind, Selection};
 use crate::scene::Target;
 
-/// Shows the selection and pushes its changes.
+/// Shows the properties of the selection and pushes the user's changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     keys::tell_of_moved(ui, editor, out);
-    // Each thing is read from its top.
+    // One scroll area per selected thing, so that each is shown from its top.
     let selection = editor.selection();
     let area = ScrollArea::vertical().id_salt((discriminant(selection), selection.item()));
     area.auto_shrink(false).show(ui, |ui| {
@@ -64,7 +64,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
     });
 }
 
-/// The values of one thing, and the keys that they can have.
+/// The properties of one item, and the buttons to key its values.
 fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
     let scene = editor.shown();
     let index = item.index;

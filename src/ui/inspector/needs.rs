@@ -1,4 +1,4 @@
-//! What the scene needs of the tracer, and why.
+//! The list of what the tracer computes for the scene, and why.
 
 use std::sync::Arc;
 
@@ -10,7 +10,8 @@ use crate::plan::{Need, RenderRequest, needs};
 use crate::ui::hint::Hinted as _;
 use crate::ui::theme::GRID;
 
-/// The lines of the plan, made when the section is opened and on every edit while it is.
+/// Shows the needs of the scene; they are determined when the section is opened, and again on every edit while it
+/// is open.
 pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
     let header = CollapsingHeader::new("Needs").id_salt("needs");
     let response = header.show(ui, |ui| {
@@ -40,7 +41,7 @@ fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
     let known = ui.data(|data| data.get_temp::<(u64, u64, Arc<Vec<Need>>)>(id));
     let known = known.filter(|(of, ..)| *of == document);
     match known {
-        // To find them out, the scene is planned from nothing: not in every frame of a drag or a flight.
+        // Determining them plans the scene from scratch: not in every frame of a drag or a flight.
         Some((_, of, lines)) if of == revision || editor.is_moving() => lines,
         _ => {
             let scene = editor.shown();

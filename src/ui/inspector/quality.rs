@@ -1,4 +1,4 @@
-//! Which sampling a scene needs, chosen by measuring it.
+//! Automatic choice of the sampling for a scene, by measuring it.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::lab::{Choice, EIGHT_BIT_FLOOR, Goal};
 use crate::scene::{Render, Scene};
 use crate::worker::Question;
 
-/// What a picture can be asked to keep to, in words.
+/// The goals on offer, with their labels.
 const GOALS: [(Option<Goal>, &str); 5] = [
     (None, "as set below"),
     (
@@ -30,19 +30,19 @@ const GOALS: [(Option<Goal>, &str); 5] = [
         "automatic: within 100 ms",
     ),
 ];
-/// 50 dB.
+/// The error that corresponds to 50 dB.
 const FIFTY_DECIBELS: f64 = 3.162_277_660_168_379_5e-3;
 
-/// What was asked for, and what was chosen last.
+/// The pending request for a sampling, and the last one chosen.
 #[derive(Debug, Default)]
 pub struct Quality {
-    /// What is being measured.
+    /// The measurement in progress.
     asked: Option<Asked>,
-    /// What was chosen, for the document of this number.
+    /// The last choice, and the document it was made for (see [`Editor::documents`]).
     choice: Option<(Choice, u64)>,
 }
 
-/// What is being measured, of which scene, for the document of this number.
+/// A measurement in progress: its goal, its scene, and the document (see [`Editor::documents`]).
 #[derive(Debug)]
 struct Asked {
     goal: Goal,
@@ -50,25 +50,25 @@ struct Asked {
     document: u64,
 }
 
-/// What an answer comes to.
+/// The outcome of an answer.
 pub enum Outcome {
-    /// The change of the document that was asked for.
+    /// The edit that applies the choice.
     Edit(Edit),
-    /// It was about the scene as it was: to be asked again.
+    /// The scene has changed since: the question is to be asked again.
     Ask(Question),
 }
 
 impl Quality {
-    /// What was chosen, if the scene still has it.
+    /// The last choice, if the scene still uses it.
     pub fn in_use(&self, editor: &Editor) -> Option<&Choice> {
         let (choice, document) = self.choice.as_ref()?;
         let antialias = editor.shown().render.antialias;
         (choice.sampling == antialias && *document == editor.documents()).then_some(choice)
     }
 
-    /// A row to choose from.
+    /// Shows the row to choose a goal.
     pub fn show(&mut self, rows: &mut FieldRows, editor: &Editor, out: &mut UiRequests) {
-        // What was asked about a document that is gone is not answered.
+        // The document that was asked about is no longer open.
         self.asked
             .take_if(|asked| asked.document != editor.documents());
         let asked = self.asked.as_ref().map(|asked| asked.goal);
@@ -95,7 +95,8 @@ impl Quality {
         }
     }
 
-    /// Takes up what was chosen, if anything could be. The view may be another one by now: it is so all the time.
+    /// Applies the answer to the question about `goal`, if a sampling was found. The camera may have moved since,
+    /// as it does all the time.
     pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Outcome> {
         let (scene, document) = (editor.shown(), editor.documents());
         let asked = self
@@ -103,7 +104,7 @@ impl Quality {
             .take_if(|own| own.goal == goal && own.document == document)?;
         let choice = choice?;
         if asked.scene.render.antialias != scene.render.antialias {
-            // Another one was chosen by hand meanwhile.
+            // The user has meanwhile chosen another sampling.
             return None;
         }
         if !asked.scene.has_same_look(scene) {

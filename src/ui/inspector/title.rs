@@ -1,4 +1,4 @@
-//! The name on top of what is inspected.
+//! Titles of the inspected items, with editable names.
 
 use egui::{Align2, Id, RichText, TextEdit, Ui};
 use egui_material_icons::MaterialIcon;
@@ -8,7 +8,7 @@ use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::ROW;
 
-/// A symbol and a heading.
+/// Shows an icon and a heading.
 pub fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
@@ -17,7 +17,7 @@ pub fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
     });
 }
 
-/// The title of an item: a symbol, and its name, which can be edited in place.
+/// Shows the title of an item: its icon, and its name as an editable field.
 pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out: &mut UiRequests) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
@@ -28,10 +28,10 @@ pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out:
     });
 }
 
-/// A text field that gives the text when it is left with Enter or a click elsewhere, and forgets it
-/// on Escape.
+/// A text field that returns the text when the user leaves it by Enter or a click elsewhere, and discards it on
+/// Escape.
 pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String> {
-    // What was typed belongs to the name that it was typed over: the item may be another by now.
+    // The typed text is stored with the name that it replaces: another item may be shown by now.
     let typed = ui.data(|data| data.get_temp::<(String, String)>(id));
     let typed = typed.filter(|(over, _)| over == name);
     let mut text = typed.map_or_else(|| name.to_owned(), |(_, text)| text);
@@ -55,11 +55,11 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
     None
 }
 
-/// Tells what several things that are selected have otherwise.
+/// Lists the properties in which the selected items differ.
 pub fn tell_different(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
     let names: Vec<&str> = names.collect();
     if names.is_empty() {
-        // What is below is the same widgets as with the line, also while they are dragged.
+        // The widgets below must keep the automatic ids that they have with the line, even during a drag.
         ui.skip_ahead_auto_ids(1);
     } else {
         ui.weak(format!("Not the same for all: {}", names.join(", ")));

@@ -1,4 +1,4 @@
-//! The world and the still picture.
+//! The properties of the world and of the still picture.
 
 use egui::Ui;
 
@@ -15,7 +15,7 @@ use crate::ui::icons;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, FieldRows, color_names, fraction};
 
-/// What belongs to the scene as a whole.
+/// Shows the properties of the scene as a whole.
 pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     title(ui, icons::WORLD, "World");
     let mut ambient = scene.ambient_intensity;
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     }
 }
 
-/// The size of the still picture, and how it is traced.
+/// Shows the size of the still picture, and how it is traced.
 pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
     let scene = editor.shown();
     title(ui, icons::IMAGE, "Picture");
@@ -101,7 +101,7 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
     }
 }
 
-/// A row for each choice between methods.
+/// Adds one row for each setting that is a choice between methods.
 struct MethodRows<'a, 'u>(&'a mut FieldRows<'u>);
 
 impl VisitSetting for MethodRows<'_, '_> {
@@ -121,7 +121,7 @@ impl VisitSetting for MethodRows<'_, '_> {
     }
 }
 
-/// A row for a whole number.
+/// A row for an integer.
 fn whole(rows: &mut FieldRows, field: &Field, value: &mut u32) {
     let mut real = f64::from(*value);
     rows.number(field, &mut real);

@@ -1,4 +1,4 @@
-//! All maps of where formulas break, in one figure: a row for each question, a column for each method.
+//! One figure of all stability maps: a row per subject, a column per method.
 
 use egui::{Align2, FontId, Painter, Pos2, Rect, TextStyle, Theme, Ui, pos2, vec2};
 
@@ -11,22 +11,22 @@ use crate::image::Image;
 use crate::lab::stability::{Map, number};
 use crate::words::capitalised;
 
-/// Width of the figure, in points, and pixels per point.
+/// Width of the figure in points, and pixels per point.
 const WIDTH: f32 = 800.0;
 const SCALE: f32 = 2.0;
-/// Methods beside each other; more go below.
+/// Maximum number of maps side by side; further ones wrap to the next line.
 const COLUMNS: usize = 4;
-/// Room for the numbers beside and below a map.
+/// Space for the numbers to the left of a map and below it.
 const BESIDE: f32 = 34.0;
 const BELOW: f32 = 34.0;
-/// Height of a map, of lines over one axis, and of a line of text.
+/// Heights of a map, of a line chart over one axis, and of a line of text.
 const MAP: f32 = 92.0;
 const LINES: f32 = 120.0;
 const LINE: f32 = 15.0;
-/// Height of a map with what stands above and below it.
+/// Height of a map with the text above and below it.
 const MAP_WITH_WORDS: f32 = 3.0 * LINE + MAP + BELOW;
 
-/// A picture of all maps.
+/// Draws all maps into one picture.
 pub fn stability_picture(maps: &[Map]) -> Image {
     let rows: Vec<&[Map]> = maps
         .chunk_by(|one, other| one.subject == other.subject)
@@ -67,7 +67,7 @@ fn height_of(row: &[Map]) -> f32 {
     head + row.len().div_ceil(COLUMNS) as f32 * MAP_WITH_WORDS
 }
 
-/// What the colours mean; how high that is.
+/// Draws the colour scale; returns its height.
 fn show_scale(ui: &Ui, area: Rect) -> f32 {
     let (painter, colors) = (ui.painter(), palette(ui.ctx()));
     let small = TextStyle::Small.resolve(ui.style());
@@ -146,7 +146,7 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
         let squares = Rect::from_min_size(corner, vec2(width - beside - 2.0 * GRID, MAP));
         heat::paint_squares(ui, map, squares);
         label_axes(painter, map, squares, (&small, colors.muted), beside > GRID);
-        // The axis upwards is told once for all that come after.
+        // The vertical axis is labelled once per line of maps.
         beside = GRID;
     }
 }

@@ -1,10 +1,10 @@
-//! Marks on axes of powers of ten, and the numbers at them.
+//! Marks of logarithmic axes, and their labels.
 
 use std::ops::RangeInclusive;
 
 use egui_plot::{GridInput, GridMark};
 
-/// Zoomed out farther, marks would be closer than pixels.
+/// Axes that span more decades than this have no marks, as these would be less than a pixel apart.
 pub const MOST_DECADES: f64 = 40.0;
 
 fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
@@ -22,7 +22,7 @@ fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
     (low..=high).flat_map(decade).filter(in_sight).collect()
 }
 
-/// Marks at the powers of ten; between them where there are few.
+/// Marks at the powers of ten, and at 2 and 5 times these on axes that span few decades.
 pub fn decades(input: &GridInput) -> Vec<GridMark> {
     let is_narrow = input.bounds.1 - input.bounds.0 < 1.5;
     marks_at(input, if is_narrow { &[1, 2, 5] } else { &[1] })
@@ -33,7 +33,7 @@ pub fn powers(input: &GridInput) -> Vec<GridMark> {
     marks_at(input, &[1])
 }
 
-/// The number at a mark.
+/// The value at a mark as plain decimals; as a power of ten if it is very large or small.
 pub fn plain(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     let value = 10.0_f64.powf(mark.value);
     if (1e-3..1e6).contains(&value) {
@@ -44,12 +44,12 @@ pub fn plain(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     }
 }
 
-/// The power of ten at a mark.
+/// The value at a mark as a power of ten.
 pub fn power_of_ten(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     superscript(mark.value.round() as i32)
 }
 
-/// The decibels at a mark.
+/// The value at a mark in decibels.
 pub fn decibels(mark: GridMark, _: &RangeInclusive<f64>) -> String {
     format!("{:.0}", (-20.0 * mark.value).round() + 0.0)
 }

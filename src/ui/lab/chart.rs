@@ -1,4 +1,4 @@
-//! The chart itself: dots on logarithmic axes, the front below the best of them.
+//! The chart: dots on logarithmic axes, and the Pareto front of the best of them.
 
 use egui::{
     Color32, FontId, Painter, Pos2, Rangef, Rect, Stroke, TextStyle, Ui, Vec2, Vec2b, pos2, vec2,
@@ -13,70 +13,70 @@ use super::labels::{along, place};
 use super::marks;
 use crate::lab::{Family, front};
 
-/// Room that labels of small charts beside each other have, in points, from which on they are seen.
+/// Spacing of axis labels in points, on small charts side by side, over which the labels fade in.
 const CLOSE_LABELS: Rangef = Rangef {
     min: 12.0,
     max: 18.0,
 };
-/// How near to a dot the pointer must be, in points.
+/// Maximum distance of the pointer from a dot that it selects, in points.
 const REACH: f32 = 14.0;
-/// A name farther away than this from its dot is tied to it by a line, in points.
+/// Distance of a name from its dot, in points, beyond which a line connects the two.
 const TIED: f32 = 14.0;
-/// Below this height, in points, axes have short names.
+/// Height in points below which the axes have short names.
 const LOW: f32 = 220.0;
-/// Room around the dots, in decades.
+/// Margin around the dots, in decades.
 const AROUND: (f64, f64) = (0.12, 0.2);
 
-/// What is drawn.
+/// The content of a chart.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
-    /// What it says, in a sentence.
+    /// The title, which sums up the chart.
     pub title: String,
-    /// What the axis to the right measures.
+    /// Label of the horizontal axis.
     pub cost: String,
-    /// What the axis upwards measures.
+    /// Label of the vertical axis.
     pub error: &'static str,
-    /// Whether errors are also told in decibels.
+    /// Whether there is an axis in decibels as well.
     pub has_decibels: bool,
     /// The dots.
     pub spots: Vec<ChartDot>,
-    /// Places of dots that differ in a number, in its order.
+    /// Sequences of dots, as indices, that are joined by thin lines.
     pub series: Vec<Vec<usize>>,
-    /// Lines across: name and height.
+    /// Horizontal lines: name and error.
     pub levels: Vec<(&'static str, f64)>,
-    /// Errors below this are shaded: nobody sees them.
+    /// The area of errors below this is shaded, as they are not visible.
     pub invisible: Option<f64>,
-    /// The dot of the settings in use.
+    /// The dot of the scene's current settings.
     pub in_use: Option<usize>,
-    /// The dot that is looked at.
+    /// The selected dot.
     pub chosen: Option<usize>,
-    /// What the axes show at least: cost and error, from and to.
+    /// Range of the axes if it is given instead of computed: cost and error.
     pub bounds: Option<[(f64, f64); 2]>,
-    /// Whether it is one of several: what they have in common is told once for all.
+    /// Whether it is one of several charts in a picture, whose common labels are written once.
     pub is_one_of_several: bool,
 }
 
-/// One dot.
+/// A dot.
 #[derive(Clone, Debug)]
 pub struct ChartDot {
     /// Its name.
     pub name: String,
-    /// What it differs in.
+    /// Its family, which determines the marker.
     pub family: Family,
-    /// To the right.
+    /// Horizontal coordinate.
     pub cost: f64,
-    /// What a quarter of the costs are below, and above.
+    /// Lower and upper quartile of the cost.
     pub quartiles: (f64, f64),
-    /// Upwards.
+    /// Vertical coordinate.
     pub error: f64,
-    /// Said when the pointer is on it.
+    /// The text of its tooltip.
     pub words: String,
-    /// Whether its cost is not to be trusted.
+    /// Whether its cost is unreliable.
     pub is_doubtful: bool,
 }
 
 impl Chart {
-    /// The places of the dots that nothing beats. Doubtful ones carry no front.
+    /// Indices of the dots on the Pareto front. Doubtful ones are left out.
     fn front(&self) -> Vec<usize> {
         let certain = |spot: &ChartDot| {
             if spot.is_doubtful {
@@ -93,7 +93,7 @@ impl Chart {
         front(&dots)
     }
 
-    /// From where to where its dots are, with room around them.
+    /// The ranges of cost and error that the dots cover, without margin.
     pub fn extent(&self) -> Option<[(f64, f64); 2]> {
         let costs = self.spots.iter().map(|spot| spot.cost);
         let levels = self.levels.iter().map(|(_, level)| *level);
@@ -101,7 +101,7 @@ impl Chart {
         Some([range(costs)?, range(errors)?])
     }
 
-    /// Draws it into all the room that there is. The dot that was clicked, if one was.
+    /// Draws the chart into all available space. Returns the dot that was clicked, if any.
     pub fn show(&self, ui: &mut Ui) -> Option<usize> {
         let Some(extent) = self.bounds.or_else(|| self.extent()) else {
             ui.centered_and_justified(|ui| ui.weak("No dots yet"));
@@ -110,7 +110,7 @@ impl Chart {
         self.show_title(ui);
         let is_low = ui.available_height() < LOW;
         let response = self.plot(is_low).show(ui, |plot| {
-            // What the axes show, and what the pointer can find; it is drawn below.
+            // Invisible points, for the axis ranges and for hovering; the visible chart is drawn below.
             let corners = PlotPoints::from(corners(extent).to_vec());
             let unseen = Color32::TRANSPARENT;
             plot.points(Points::new("", corners).color(unseen).allow_hover(false));
@@ -120,7 +120,7 @@ impl Chart {
             }
         });
         self.draw(ui, &response.transform);
-        // How wide the axes are is known one frame later.
+        // The plot learns the width of its axes one frame late.
         let (id, frame) = (
             response.response.id.with("frame"),
             *response.transform.frame(),
@@ -140,7 +140,7 @@ impl Chart {
     fn show_title(&self, ui: &mut Ui) {
         let title = egui::RichText::new(&self.title);
         if self.is_one_of_several {
-            // Two lines for each, so that charts beside each other begin at one height.
+            // Two lines for each title, so that neighbouring charts start at the same height.
             let size = vec2(
                 ui.available_width(),
                 2.0 * ui.text_style_height(&TextStyle::Small),
@@ -158,7 +158,7 @@ impl Chart {
         });
     }
 
-    /// What its dots differ in.
+    /// The families of its dots.
     pub fn families(&self) -> Vec<Family> {
         self.spots.iter().map(|spot| spot.family).collect()
     }
@@ -197,7 +197,7 @@ impl Chart {
             .label_formatter(|hover| self.label(hover))
     }
 
-    /// Draws over the empty plot: what lies below first.
+    /// Draws onto the empty plot, from back to front.
     fn draw(&self, ui: &Ui, transform: &PlotTransform) {
         let colors = palette(ui.ctx());
         let frame = *transform.frame();
@@ -265,7 +265,7 @@ impl Chart {
         );
     }
 
-    /// Names stand beside the dots: first those of the front, then as many as there is room for.
+    /// Writes names beside the dots: first those of the front, then as many as fit.
     fn write_names(
         &self,
         painter: &Painter,
@@ -315,7 +315,7 @@ impl Chart {
         }
     }
 
-    /// Where a dot is on axes of powers of ten.
+    /// Position of a dot on the logarithmic axes.
     fn at(&self, index: usize) -> [f64; 2] {
         let spot = &self.spots[index];
         [spot.cost.log10(), spot.error.log10()]
@@ -342,7 +342,7 @@ impl Chart {
     }
 }
 
-/// Where the axes begin and end, as powers of ten.
+/// The ends of the axes, as powers of ten, with a margin.
 fn corners([costs, errors]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
     let (across, up) = AROUND;
     [
@@ -351,7 +351,7 @@ fn corners([costs, errors]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
     ]
 }
 
-/// From the least to the greatest; `None` for nothing.
+/// Smallest and largest of the positive, finite values; `None` if there are none.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let values = values.filter(|value| value.is_finite() && *value > 0.0);
     values.fold(None, |range: Option<(f64, f64)>, value| {
@@ -360,7 +360,8 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The line above which something is both faster and closer: down at each dot, then to the right.
+/// The staircase of the front: down to each dot, then to the right. For any point above it, some dot is both faster
+/// and more accurate.
 fn stairs(frame: Rect, dots: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
     let mut stairs = Vec::new();
     for dot in dots {
@@ -374,7 +375,7 @@ fn stairs(frame: Rect, dots: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
     stairs
 }
 
-/// Faint lines at the powers of ten.
+/// Draws faint lines at the powers of ten.
 fn draw_decades(painter: &Painter, transform: &PlotTransform, line: Stroke) {
     let (frame, bounds) = (*transform.frame(), transform.bounds());
     let on_screen = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));

@@ -1,4 +1,4 @@
-//! A dot looked at: its picture, the reference, or what lies between them.
+//! The picture of a selected dot, its reference, or the difference of the two, shown instead of the live view.
 
 use egui::{Context, Response, Sense, TextureHandle, TextureOptions, Ui};
 
@@ -6,20 +6,20 @@ use super::super::upload::{paint, whole};
 use super::super::viewport::Place;
 use crate::image::Image;
 
-/// What of a dot is shown in place of the live view.
+/// What is shown of a dot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// Its picture.
     Picture,
-    /// What it should be.
+    /// The reference picture.
     Reference,
-    /// How far each channel is off, so many times enlarged.
+    /// The absolute difference of each channel, multiplied by this.
     Off(u32),
-    /// The same with its sign, around middle grey.
+    /// The signed difference around middle grey, multiplied by this.
     Signed(u32),
 }
 
-/// The faces that can be chosen.
+/// The faces on offer, each with its label and hint.
 pub const FACES: [(Face, &str, &str); 7] = [
     (Face::Picture, "This", "The picture of the dot"),
     (
@@ -50,7 +50,7 @@ pub const FACES: [(Face, &str, &str); 7] = [
     ),
 ];
 
-/// The picture of a face.
+/// Computes the picture of a face.
 pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
     let channel = |a: u8, b: u8| {
         let off = i64::from(a) - i64::from(b);
@@ -74,16 +74,16 @@ pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
     }
 }
 
-/// A face on the graphics card.
+/// The texture of the face on screen.
 #[derive(Default)]
 pub struct Comparison {
     texture: Option<TextureHandle>,
-    /// The dot, the face, and the study it is of.
+    /// The dot, the face and the study that the texture shows.
     shown: Option<(usize, Face, u64)>,
 }
 
 impl Comparison {
-    /// Draws a face into the place of the live view. Under the pointer, it tells the pixel.
+    /// Draws a face in the rectangle of the live view. A tooltip shows the pixel under the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -130,7 +130,7 @@ impl Comparison {
     }
 }
 
-/// What a pixel is and should be, `at` shares of the picture.
+/// Describes a pixel and its reference; `at` is the position as fractions of width and height.
 fn pixel(picture: &Image, reference: &Image, at: egui::Vec2) -> String {
     let place = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
     let (x, y) = (place(at.x, picture.width), place(at.y, picture.height));

@@ -1,4 +1,4 @@
-//! What is known of the dot that is looked at.
+//! Details of the selected dot.
 
 use egui::{Button, RichText, Ui};
 
@@ -13,7 +13,7 @@ use crate::plan::Model;
 use crate::scene::Render;
 use crate::ui::hint::Hinted as _;
 
-/// Whether the scene can be made to be traced in a way, what the button for that says, and its hint.
+/// Whether the scene can adopt the settings of a candidate, with the label of the button and its hint.
 fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {
     let word = "Use this";
     if candidate.family == Family::Referee {
@@ -36,7 +36,7 @@ fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'stat
 }
 
 impl Lab {
-    /// Its settings, its figures, and which of its pictures is shown.
+    /// Shows the settings and figures of the selected dot, and the choice of its picture.
     pub(super) fn show_details(
         &mut self,
         ui: &mut Ui,
@@ -100,7 +100,7 @@ impl Lab {
         }
     }
 
-    /// The measurements that share the dot of the chosen one, with their names.
+    /// The measurements in the same dot as the selected one, with their names.
     fn equals_of_chosen(&self, dots: &[Vec<usize>]) -> Vec<(usize, String)> {
         let (Some(chosen), Some(study)) = (self.chosen, &self.study) else {
             return Vec::new();

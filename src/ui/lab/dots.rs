@@ -1,51 +1,51 @@
-//! The dots of a study on the chart.
+//! Conversion of a study into the dots of its chart.
 
 use super::chart::{Chart, ChartDot};
 use crate::lab::{EIGHT_BIT_FLOOR, Family, Measurement, Study, account, clusters, finding};
 use crate::plan::Model;
 use crate::scene::{Render, Sampling};
 
-/// Twice the error that is drawn for none, where nothing has less.
+/// Errors of 0 are drawn at half the smallest positive error, or at half of this if that is smaller.
 const NO_ERROR: f64 = 1e-4;
-/// Letters of a line beside a dot.
+/// Maximum number of characters per line in a tooltip.
 const LINE: usize = 60;
 
-/// What the axis to the right measures.
+/// Quantity of the horizontal axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CostAxis {
-    /// Milliseconds.
+    /// Milliseconds per picture.
     Time,
     /// Rays per pixel.
     Rays,
 }
 
-/// What the axis upwards measures.
+/// Quantity of the vertical axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorAxis {
-    /// Root of the mean square.
+    /// Root-mean-square error.
     Rmse,
-    /// The worst channel.
+    /// Error of the worst channel.
     Max,
-    /// Share of the pixels that are visibly off.
+    /// Share of the pixels that are visibly wrong.
     Visible,
 }
 
-/// What is looked at in a study, and how.
+/// How a study is shown.
 #[derive(Clone, Debug)]
 pub struct ChartView<'a> {
     /// The name of the scene.
     pub name: &'a str,
-    /// What was measured on.
+    /// Description of the machine it was measured on.
     pub machine: &'a str,
-    /// What the axes measure.
+    /// Quantities of the two axes.
     pub axes: (CostAxis, ErrorAxis),
-    /// The settings that the scene has by now.
+    /// The current render settings of the scene.
     pub render: &'a Render,
-    /// The measurement that is looked at.
+    /// Index of the selected measurement.
     pub chosen: Option<usize>,
 }
 
-/// The chart of a study, and the measurements that each of its dots stands for.
+/// Makes the chart of a study. Also returns, for each dot, the indices of the measurements it stands for.
 pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
     let clusters = clusters(study);
     let error = |dot: &Measurement| {
@@ -72,7 +72,8 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
         }
     });
     let mut spots: Vec<ChartDot> = spots.collect();
-    // A logarithm has no zero: what has no error stands below all that have one; its words tell the figure.
+    // The axis is logarithmic and has no zero: dots without error are drawn below all others; the tooltip has the
+    // figure.
     let errors = spots.iter().map(|spot| spot.error);
     let least = errors.filter(|error| *error > 0.0).fold(NO_ERROR, f64::min);
     for spot in &mut spots {
@@ -129,7 +130,7 @@ fn name_of(dot: &Measurement, equals: usize) -> String {
     }
 }
 
-/// The measurement of the settings that the scene has by now, if they were measured.
+/// The measurement of the scene's current settings, if it was made.
 fn in_use(study: &Study, render: &Render) -> Option<usize> {
     let (width, height) = study.size();
     let own = Render {
@@ -145,7 +146,7 @@ fn in_use(study: &Study, render: &Render) -> Option<usize> {
     study.measurements.iter().position(is_own)
 }
 
-/// The ladders of samplings: grids by their number, and adaptive ones by their time.
+/// The dots to be joined by lines: grids ordered by sample count, and adaptive samplings by cost.
 fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<usize>> {
     let ladder = |is_in: fn(Sampling) -> bool| {
         let measurements = study.measurements.iter().enumerate();
@@ -169,7 +170,7 @@ fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<us
     ]
 }
 
-/// A text in lines that can be read beside a dot.
+/// Breaks a text into lines that fit a tooltip.
 fn wrapped(text: &str) -> String {
     let mut lines = String::new();
     let mut length = 0;
@@ -188,11 +189,11 @@ fn wrapped(text: &str) -> String {
     lines
 }
 
-/// The numbers of a dot, one in each line.
+/// The figures of a measurement, one per line.
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
         let doubt = if dot.is_doubtful() { " (doubtful)" } else { "" };
-        // To either side of the median.
+        // As a deviation to either side of the median.
         let spread = timing.spread * 50.0;
         format!(
             "{:.3} ms ± {spread:.0} %{doubt}, {} runs",

@@ -1,4 +1,4 @@
-//! The picture of how cost grows: lines on logarithmic axes.
+//! Chart of how cost grows with the number of primitives, on logarithmic axes.
 
 use egui::{Align2, RichText, Ui};
 use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Text};
@@ -9,12 +9,12 @@ use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, Way};
 
-/// How far the name of a line is above its end, or below it, in decades.
+/// Distance of a line's name above or below its end, in decades.
 const NAME_OFF: f64 = 0.06;
-/// How near the end of another line may be above that of a line whose name is above, too, in decades.
+/// If another line ends less than this far above, in decades, the name is written below the line.
 const NAME_ROOM: f64 = 0.25;
 
-/// A picture of what was measured.
+/// Draws what was measured.
 pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
     picture(look, |ui| {
         ui.label(RichText::new(finding(growth)).heading());
@@ -23,7 +23,7 @@ pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
     })
 }
 
-/// What the chart says, in a sentence.
+/// The heading, which sums up the chart.
 fn finding(growth: &Growth) -> String {
     let ends = |way: Way| {
         let mut costs = growth.costs.iter();

@@ -1,4 +1,4 @@
-//! What is measured and shown, and which dot is asked for, in a line above the chart.
+//! The row of controls above the chart: tabs, measuring, axes and limits.
 
 use egui::{Button, DragValue, Label, RichText, Ui};
 
@@ -11,7 +11,7 @@ use crate::editor::Editor;
 use crate::lab::{cheapest_within, closest_within, costs_of_choices};
 use crate::ui::hint::Hinted as _;
 
-/// Something to choose, what it is called, and what that means.
+/// A value to choose, with its label and hint.
 type Choice<T> = (T, &'static str, &'static str);
 
 const TABS: [Choice<Tab>; 2] = [
@@ -66,7 +66,7 @@ fn choose<T: PartialEq, const N: usize>(ui: &mut Ui, chosen: &mut T, choices: [C
 }
 
 impl Lab {
-    /// The line; what it asks of the render thread.
+    /// Shows the row; returns a request to the render thread, if any.
     pub(super) fn show_head(
         &mut self,
         ui: &mut Ui,
@@ -102,7 +102,7 @@ impl Lab {
         wish
     }
 
-    /// What starts and ends the measuring, and how far it is.
+    /// Shows the buttons that start and stop measuring, and the progress.
     fn show_measuring(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
         let hint = "Trace the scene in every way there is, and compare: about half a minute";
         let measure = ui.add_enabled(!self.is_running, Button::new("Measure"));
@@ -136,7 +136,7 @@ impl Lab {
         let rmse = DragValue::new(&mut self.bounds.0)
             .speed(1e-5)
             .range(1e-6..=1.0);
-        // Each with its bound, also where lines are short.
+        // Keeps each button with its limit when the row wraps.
         let by_error = ui.horizontal(|ui| {
             let is_clicked = button(ui, "Cheapest way below", hint);
             ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");

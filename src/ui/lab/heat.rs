@@ -1,4 +1,4 @@
-//! A failure map as coloured squares.
+//! Drawing of a stability map as coloured squares.
 
 use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -6,12 +6,12 @@ use super::super::theme::{GRID, palette};
 use super::ramp;
 use crate::lab::stability::{Axis, Map, number};
 
-/// Room for the numbers on the left and below.
+/// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (40.0, 30.0);
-/// Size of the numbers.
+/// Font size of the numbers.
 const SMALL: f32 = 10.0;
 
-/// Draws a map into `size`, with a ring where a scene stands.
+/// Draws a map of the given size, with a ring at the position of the scene, if given.
 pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>) {
     let (area, response) = ui.allocate_exact_size(size, Sense::hover());
     let colors = palette(ui.ctx());
@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
     }
 }
 
-/// Whether a method fails within one step of where a scene stands.
+/// Returns whether a method fails anywhere within one step of the scene's position.
 pub fn is_near_failing(map: &Map, (x, y): (f64, f64)) -> bool {
     let columns = map.across.values.len();
     let (column, row) = (nearest(&map.across, x), nearest(&map.up, y));
@@ -77,11 +77,12 @@ pub fn is_near_failing(map: &Map, (x, y): (f64, f64)) -> bool {
     })
 }
 
-/// The mark of an axis that is nearest to a value, by decades.
+/// Index of the mark nearest to a value on a logarithmic axis.
 fn nearest(axis: &Axis, value: f64) -> usize {
     let away = |mark: f64| {
         if mark == 0.0 || value == 0.0 {
-            // Nothing is a decade away from zero: it stands for all that is below the next mark.
+            // Zero is infinitely far away on a logarithmic axis: its mark stands for all values well below the next
+            // one.
             let above = axis.values.iter().copied().filter(|mark| *mark > 0.0);
             let above = above.min_by(f64::total_cmp);
             let is_below = above.is_some_and(|above| value < above * 0.3);
@@ -98,7 +99,7 @@ fn nearest(axis: &Axis, value: f64) -> usize {
     nearest.map_or(0, |(index, _)| index)
 }
 
-/// Where a cell of a map is in the place of all.
+/// Rectangle of a cell within the area of the map.
 fn square_of(map: &Map, area: Rect, index: usize) -> Rect {
     let (columns, rows) = (map.across.values.len(), map.up.values.len());
     let cell = vec2(area.width() / columns as f32, area.height() / rows as f32);
@@ -110,7 +111,7 @@ fn square_of(map: &Map, area: Rect, index: usize) -> Rect {
     Rect::from_min_size(corner, cell)
 }
 
-/// Draws the squares of a map alone.
+/// Draws the squares of a map without axes.
 pub fn paint_squares(ui: &Ui, map: &Map, area: Rect) {
     let colors = palette(ui.ctx());
     for (index, tries) in map.cells.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Where names stand beside their dots: nowhere over another name or a dot.
+//! Placement of names beside dots without overlaps.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Directions from a dot, the best first.
+/// Directions from a dot, best first.
 const WAYS: [Vec2; 8] = [
     vec2(1.0, -0.6),
     vec2(1.0, 0.6),
@@ -13,16 +13,16 @@ const WAYS: [Vec2; 8] = [
     vec2(1.0, 0.0),
     vec2(-1.0, 0.0),
 ];
-/// How far from the dot, the nearest first, in points.
+/// Distances from a dot in points, nearest first.
 const STEPS: [f32; 6] = [8.0, 16.0, 28.0, 44.0, 64.0, 90.0];
-/// Free room around a name, in points.
+/// Margin around a name, in points.
 const GAP: f32 = 2.0;
-/// Steps along a line in which a place for its name is looked for, in points.
+/// Step width of the search along a level's line, in points.
 const ALONG: f32 = 8.0;
 
-/// A place for each name of this size beside its dot, in their order; `None` where none is free within
-/// `frame`. None lies over another, over a dot (of `radius`) or over what is `taken`; where there is room, none is closer
-/// to the dot of another or lies over `lines`.
+/// Finds a place for each name, given by its dot and size, in this order; `None` if there is none within `frame`.
+/// No name overlaps another one, a dot (of `radius`) or a rectangle of `taken`. Where possible, it is also nearest
+/// to its own dot and does not cross any of `lines`.
 pub fn place(
     names: &[(Pos2, Vec2)],
     (dots, radius): (&[Pos2], f32),
@@ -69,8 +69,8 @@ pub fn place(
     places
 }
 
-/// A place for the name of a level, of this size: below its line or above it, as far to the right as nothing that is
-/// `taken` is there; `None` if there is no such place.
+/// Finds a place for the name of a level: below or above its line, as far right as possible without overlapping
+/// `taken`; `None` if there is none.
 pub fn along(y: f32, size: Vec2, (frame, taken): (Rect, &[Rect])) -> Option<Rect> {
     let heights = [y + GAP, y - GAP - size.y];
     let steps = ((frame.width() - size.x) / ALONG).max(0.0) as u32;
@@ -82,18 +82,18 @@ pub fn along(y: f32, size: Vec2, (frame, taken): (Rect, &[Rect])) -> Option<Rect
     tries.find(|at| frame.contains_rect(*at) && is_free(at))
 }
 
-/// Whether the line from a dot to its name crosses another name.
+/// Returns whether the line from a dot to its name at `at` crosses another name.
 fn crosses(dot: Pos2, at: Rect, name: Rect) -> bool {
     tie(dot, at).any(|point| name.contains(point))
 }
 
-/// Points of the line from a dot to its name.
+/// Sample points on the line from a dot to its name.
 fn tie(dot: Pos2, at: Rect) -> impl Iterator<Item = Pos2> {
     let near = at.clamp(dot);
     (1..16_u8).map(move |step| dot + (near - dot) * (f32::from(step) / 16.0))
 }
 
-/// A rectangle that begins so far from a dot in some direction.
+/// The rectangle of a name at a distance of `step` from a dot in a direction.
 fn beside(dot: Pos2, size: Vec2, way: Vec2, step: f32) -> Rect {
     let to_middle = vec2(
         way.x.signum() * if way.x == 0.0 { 0.0 } else { size.x / 2.0 },
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn a_name_is_closest_to_its_own_dot_and_beside_lines_where_there_is_room() {
         let frame = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 300.0));
-        // The usual place of the first name is beside the second dot.
+        // The preferred place of the first name would be beside the second dot.
         let dots = [pos2(300.0, 150.0), pos2(370.0, 140.0)];
         let names = dots.map(|dot| (dot, vec2(60.0, 12.0)));
         let line = Rect::from_two_pos(pos2(250.0, 140.0), pos2(299.0, 140.0));

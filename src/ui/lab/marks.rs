@@ -1,21 +1,21 @@
-//! The marks of the chart: a shape and a colour for each family.
+//! Markers of the chart: a shape and a colour for each family.
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2, vec2};
 
 use super::super::theme::{GRID, palette};
 use crate::lab::Family;
 
-/// Half the size of a mark, in points.
+/// Half the size of a marker, in points.
 pub const RADIUS: f32 = 4.5;
 
-/// The colour of a family's marks.
+/// The colour of a family's markers.
 pub fn color(ui: &Ui, family: Family) -> Color32 {
     let colors = palette(ui.ctx()).families;
     let index = Family::ALL.iter().position(|(other, _)| *other == family);
     colors[index.unwrap_or(0)]
 }
 
-/// Draws a mark: filled, or an outline where it is doubtful.
+/// Draws a marker; a doubtful measurement is an outline only.
 pub fn draw(painter: &Painter, at: Pos2, family: Family, color: Color32, is_doubtful: bool) {
     let stroke = Stroke::new(1.5, color);
     let fill = if is_doubtful {
@@ -61,13 +61,13 @@ pub fn draw(painter: &Painter, at: Pos2, family: Family, color: Color32, is_doub
     });
 }
 
-/// What the marks mean, in a line.
+/// Shows the legend of the markers.
 pub fn legend(ui: &mut Ui, families: &[Family]) {
     for (family, name) in Family::ALL {
         if !families.contains(&family) {
             continue;
         }
-        // A line ends before a mark, and not behind it.
+        // Keep a marker and its name on the same line.
         let small = egui::TextStyle::Small.resolve(ui.style());
         let text = ui
             .painter()

@@ -1,5 +1,5 @@
-//! The lab: time against error of every way of tracing the open scene, each a dot that can be looked
-//! at and adopted.
+//! The lab: charts of time against error for every way of tracing the open scene. Each way is a dot whose picture
+//! can be inspected and whose settings can be adopted.
 
 mod axes;
 
@@ -40,7 +40,7 @@ pub use panel::{Lab, LabRequest};
 use crate::image::Image;
 use crate::lab::Figure;
 
-/// A figure as a picture.
+/// Renders a figure to a picture.
 pub fn drawn(figure: &Figure) -> Image {
     match figure {
         Figure::Chart {

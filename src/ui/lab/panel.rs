@@ -1,4 +1,4 @@
-//! The lab's state, and its panel.
+//! The state of the lab, and its panel.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,58 +22,58 @@ use crate::ui::prompts::primary;
 use crate::words::counted;
 use crate::worker::Background;
 
-/// Time between two looks at whether a kept study is read.
+/// Interval at which a stored study that is being read is polled.
 const LOOK: Duration = Duration::from_millis(50);
-/// Longer side of the pictures that are measured, in pixels: a study then takes seconds.
+/// Longer side of the measured pictures in pixels, small enough for a study to take seconds.
 const SIDE: u32 = 256;
-/// Width of the column that tells of a dot.
+/// Width of the column with details of a dot.
 pub(super) const DETAILS: f32 = 300.0;
 
-/// What the lab asks of the render thread.
+/// A request of the lab to the render thread.
 pub enum LabRequest {
-    /// Measure this.
+    /// Measure this study.
     Measure(Box<Study>),
-    /// Give the measuring up.
+    /// Stop measuring.
     Stop,
 }
 
-/// What the panel shows.
+/// The tabs of the panel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tab {
-    /// Time against error.
+    /// The chart of time against error.
     Chart,
-    /// The maps of where formulas break.
+    /// The stability maps.
     Stability,
 }
 
-/// The lab's state.
+/// The state of the lab.
 pub struct Lab {
     pub(super) study: Option<Box<Study>>,
-    /// Whether the render thread is at it.
+    /// Whether the render thread is measuring.
     pub(super) is_running: bool,
-    /// Counts the studies.
+    /// Number of the current study, to tell apart the textures of different ones.
     number: u64,
-    /// What the document was called that was measured.
+    /// Name of the measured document.
     name: String,
     pub(super) cost: CostAxis,
     pub(super) error: ErrorAxis,
     pub(super) chosen: Option<usize>,
     pub(super) face: Face,
     look: Comparison,
-    /// The bounds for the cheapest dot: RMSE and milliseconds.
+    /// The limits for choosing a dot: RMSE and milliseconds.
     pub(super) bounds: (f64, f64),
-    /// What is measured on.
+    /// Description of this machine.
     machine: String,
-    /// What is shown.
+    /// The selected tab.
     pub(super) tab: Tab,
     stability: Stability,
-    /// Whether POV-Ray is to be measured too.
+    /// Whether POV-Ray is to be measured, too.
     pub(super) asks_povray: bool,
-    /// What is said of the bounds that were asked for.
+    /// The message if no dot is within the limit asked for.
     pub(super) notice: &'static str,
-    /// Where studies are kept; `None` keeps none.
+    /// The folder for studies; `None` if they are not stored.
     folder: Option<PathBuf>,
-    /// The document whose kept study was looked for, and what is found.
+    /// The document whose stored study was last looked for.
     looked_for: Option<u64>,
     found: Background<Option<Study>>,
 }
@@ -108,7 +108,7 @@ impl Default for Lab {
 }
 
 impl Lab {
-    /// A lab that keeps its studies in a folder, if there is one.
+    /// Creates a lab that stores its studies in a folder, if there is one.
     pub fn new(folder: Option<PathBuf>) -> Self {
         Self {
             folder,
@@ -116,7 +116,8 @@ impl Lab {
         }
     }
 
-    /// Takes up what the render thread has measured, and whether it was still at it just before.
+    /// Takes over measurements of the render thread; `is_measuring` says whether it was still measuring just
+    /// before.
     pub fn update(&mut self, is_measuring: bool, news: Option<Study>) {
         if self.is_running {
             self.study = news.map(Box::new).or(self.study.take());
@@ -125,7 +126,7 @@ impl Lab {
         }
     }
 
-    /// Puts a study that is done on disk.
+    /// Stores a finished study on disk.
     fn keep_what_is_done(&self) {
         let done = self
             .study
@@ -134,17 +135,17 @@ impl Lab {
         let folder = self.folder.as_ref().filter(|_| !self.is_running);
         if let (Some(study), Some(folder)) = (done, folder) {
             let (study, machine, folder) = (study.clone(), self.machine.clone(), folder.clone());
-            // Nobody waits for it.
+            // Runs in the background; the result is not needed.
             drop(Background::start("glint-lab", move || {
                 keep(&study, &machine, &folder);
             }));
         }
     }
 
-    /// Looks for what was measured of a document that was opened, and takes it up when it is found.
+    /// Looks for a stored study of the document that was opened, and shows it once it is read.
     fn look_for_kept(&mut self, ui: &Ui, editor: &Editor) {
         if self.is_running {
-            // What it finds would take the place of what is measured.
+            // It would replace the study that is being measured.
             return;
         }
         let document = editor.documents();
@@ -152,7 +153,7 @@ impl Lab {
             && self.looked_for != Some(document)
         {
             self.looked_for = Some(document);
-            // As it is measured: with the values that its keys give it.
+            // As for measuring: the scene with its keyed values at the current time.
             let (scene, machine) = (Arc::clone(editor.shown()), self.machine.clone());
             self.found =
                 Background::start("glint-lab", move || kept(&scene, SIDE, &machine, &folder));
@@ -166,7 +167,7 @@ impl Lab {
         }
     }
 
-    /// Shows another study, or none, of a document of this name.
+    /// Shows another study, or none, of the document with this name.
     fn take_up(&mut self, study: Option<Box<Study>>, name: String) {
         (self.study, self.name) = (study, name);
         self.chosen = None;
@@ -175,12 +176,12 @@ impl Lab {
         self.found = Background::default();
     }
 
-    /// Whether a dot is looked at in place of the live view.
+    /// Returns whether a dot's picture is shown instead of the live view.
     pub fn is_looking(&self) -> bool {
         self.chosen.is_some()
     }
 
-    /// What the status line says about the dot that is looked at, if one is.
+    /// Text of the status line about the selected dot, if any.
     pub fn describe(&self) -> Option<String> {
         let index = self.chosen?;
         let dot = self.study.as_ref()?.measurements.get(index)?;
@@ -192,7 +193,7 @@ impl Lab {
         ))
     }
 
-    /// What is looked at in place of the live view.
+    /// Title of the picture shown instead of the live view.
     pub fn name(&self, ui: &Ui) -> String {
         if asks_for_reference(ui) {
             return "Lab: the reference".to_owned();
@@ -202,13 +203,13 @@ impl Lab {
         dot.map_or(String::new(), |dot| format!("Lab: {}", dot.candidate.name))
     }
 
-    /// Forgets what was measured: it was of another document. What it asks of the render thread.
+    /// Drops the study, as another document is open. Returns the request that stops the measuring, if necessary.
     pub fn forget(&mut self) -> Option<LabRequest> {
         self.take_up(None, String::new());
         std::mem::take(&mut self.is_running).then_some(LabRequest::Stop)
     }
 
-    /// Leaves the dot that is looked at; whether there was one.
+    /// Deselects the dot; returns whether one was selected.
     pub fn leave(&mut self) -> bool {
         self.chosen.take().is_some()
     }
@@ -241,17 +242,17 @@ impl Lab {
                         .and_then(|members| members.first().copied());
                 }
             });
-            // The panel stays as high as it is, whatever there is to say.
+            // The panel keeps its height, however much text there is.
             let details = ScrollArea::vertical().id_salt("details").auto_shrink(false);
             details.show(ui, |ui| {
-                // In it, one thing would stand beside the other, as it and the chart do.
+                // The scroll area inherits the horizontal layout of its parent.
                 ui.vertical(|ui| self.show_details(ui, editor, &members, out));
             });
         });
         wish
     }
 
-    /// Begins to measure the scene that is shown.
+    /// Starts to measure the scene on screen.
     pub(super) fn measure(&mut self, editor: &Editor) -> LabRequest {
         let mut study = Study::of_side(Arc::clone(editor.shown()), SIDE);
         if self.asks_povray {
@@ -263,7 +264,7 @@ impl Lab {
         LabRequest::Measure(study)
     }
 
-    /// What stands in place of the chart before anything is measured.
+    /// Shown instead of the chart before anything is measured.
     fn show_invitation(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
         let mut wish = None;
         ui.vertical_centered(|ui| {
@@ -278,7 +279,7 @@ impl Lab {
         wish
     }
 
-    /// Draws what is looked at into the place of the live view; `None` if nothing is.
+    /// Draws the selected dot's picture in the rectangle of the live view; `None` if no dot is selected.
     pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
         let place_of_dot = self.chosen?;
         let study = self.study.as_ref()?;
@@ -293,8 +294,8 @@ impl Lab {
         Some(self.look.show(ui, place, key, (picture, reference)))
     }
 
-    /// Whether the scene is not any more what was measured. Settings do not count: they are what is
-    /// compared. So are the depths of reflections that were measured.
+    /// Returns whether the scene has changed since it was measured. Render settings do not count, as they are what
+    /// is compared; nor does a reflection limit that was measured.
     pub(super) fn is_stale(&self, editor: &Editor) -> bool {
         let bare = |scene: &Scene| Scene {
             render: Render {
@@ -327,12 +328,12 @@ impl Lab {
     }
 }
 
-/// Whether the key is held with which the reference is seen.
+/// Returns whether the key that shows the reference is held.
 fn asks_for_reference(ui: &Ui) -> bool {
     !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B))
 }
 
-/// Whether two scenes look alike, whatever lights and objects are called in them.
+/// Returns whether two scenes look the same, ignoring names and groups of lights and objects.
 fn looks_like(one: &Scene, other: &Scene) -> bool {
     let mut objects = one.objects.iter().zip(other.objects.iter());
     let mut lights = one.lights.iter().zip(other.lights.iter());

@@ -1,4 +1,4 @@
-//! Charts as pictures: one study, or several with the same axes.
+//! Charts rendered to pictures: one study, or several with common axes.
 
 use egui::{Theme, Ui, vec2};
 
@@ -10,10 +10,10 @@ use super::marks;
 use crate::image::Image;
 use crate::lab::{PictureLook, Study};
 
-/// Pixels of a picture per point of its layout.
+/// Pixels per point.
 const SCALE: u32 = 2;
 
-/// A picture of a chart that is drawn into all of it.
+/// Renders a chart that fills the whole picture.
 pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
     let theme = if look.is_light {
         Theme::Light
@@ -35,8 +35,8 @@ pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
     }
 }
 
-/// The charts of time and RMSE of these studies, each with the name of its scene, as the window would draw
-/// them: one, or several beside each other with the same axes.
+/// Draws the charts of time against RMSE of these studies, each given with the name of its scene, as the window
+/// would draw them: several are arranged in a grid and share the extent of their axes.
 pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLook) -> Image {
     let charts = studies.iter().map(|(name, study)| {
         let view = ChartView {
@@ -80,7 +80,7 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
     })
 }
 
-/// What the axes and marks of several charts mean.
+/// Shows what the charts have in common: the legend, and the quantities of the axes.
 fn show_common(ui: &mut Ui, charts: &[Chart]) {
     ui.horizontal_wrapped(|ui| {
         let families: Vec<_> = charts.iter().flat_map(Chart::families).collect();

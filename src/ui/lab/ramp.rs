@@ -1,16 +1,17 @@
-//! The colours of failure rates.
+//! Colour scale of failure rates.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Theme, Ui, pos2, vec2};
 
 use super::super::theme::palette;
 
-/// The lowest rate that has a colour of its own; each decade above it is a step farther from the background.
+/// The lowest rate that is distinguished from rarer ones; the scale from here to 1 is logarithmic.
 pub const LOWEST: f64 = 1e-5;
 
-/// From rare to always: the upper part of *cividis*, which is as even for eyes without red or green.
+/// From rare to always: the upper part of *cividis*, which stays perceptually uniform under red-green colour
+/// blindness.
 ///
-/// Nuñez, Anderton and Renslow, "Optimizing colormaps with consideration for color vision deficiency", PLOS
-/// ONE 13(7), 2018.
+/// Nuñez, Anderton and Renslow, "Optimizing colormaps with consideration for color vision deficiency", PLOS ONE
+/// 13(7), 2018.
 const STOPS: [Color32; 6] = [
     Color32::from_rgb(0x2A, 0x3F, 0x6D),
     Color32::from_rgb(0x4D, 0x56, 0x6D),
@@ -20,12 +21,12 @@ const STOPS: [Color32; 6] = [
     Color32::from_rgb(0xFE, 0xE8, 0x38),
 ];
 
-/// How far along the colours a rate is, 0–1.
+/// Position of a rate on the scale, 0–1.
 pub fn share(rate: f64) -> f64 {
     (1.0 - rate.log10() / LOWEST.log10()).clamp(0.0, 1.0)
 }
 
-/// The colour of a rate above 0: the higher, the farther from the background.
+/// The colour of a rate above 0: the higher, the more it contrasts with the background.
 pub fn color(theme: Theme, rate: f64) -> Color32 {
     let share = match theme {
         Theme::Dark => share(rate),
@@ -36,7 +37,7 @@ pub fn color(theme: Theme, rate: f64) -> Color32 {
     STOPS[first].lerp_to_gamma(STOPS[first + 1], (at - first as f64) as f32)
 }
 
-/// The colours in a bar, with what its ends mean beside it.
+/// Draws the scale as a bar with labels at its ends.
 pub fn show_bar(ui: &Ui, bar: Rect) {
     let painter = ui.painter();
     let steps = 80_u16;
@@ -59,7 +60,7 @@ pub fn show_bar(ui: &Ui, bar: Rect) {
     beside(bar.right_center() + gap, Align2::LEFT_CENTER, "always");
 }
 
-/// Slanting lines: nothing was tried there.
+/// Hatches an area in which nothing was tested.
 pub fn hatch(painter: &Painter, area: Rect, line: Stroke) {
     let painter = painter.with_clip_rect(area.intersect(painter.clip_rect()));
     let mut x = area.left() - area.height();

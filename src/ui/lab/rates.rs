@@ -1,4 +1,4 @@
-//! Failure rates over one axis: lines with the intervals that hold the true rates.
+//! Failure rates over one axis: lines with confidence intervals.
 
 use egui::{Align2, FontId, Rect, Stroke, TextStyle, Ui, pos2};
 
@@ -6,12 +6,12 @@ use super::super::theme::{GRID, palette};
 use super::ramp;
 use crate::lab::stability::{Map, Tries, number};
 
-/// Room for the numbers on the left and below.
+/// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (34.0, 30.0);
 /// Width of the column that names the methods.
 const NAMES: f32 = 250.0;
 
-/// Draws the rates of methods that are tried over the same axis.
+/// Draws the rates of methods that were tested over the same axis.
 pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
     let (painter, colors) = (ui.painter(), palette(ui.ctx()));
     let small = TextStyle::Small.resolve(ui.style());
@@ -52,7 +52,7 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
     painter.text(below, Align2::CENTER_TOP, axis.name, font, colors.muted);
     for (place, map) in row.iter().enumerate() {
         let color = colors.families[place % colors.families.len()];
-        // Beside each other where they are equal.
+        // Shifted sideways, so that equal rates do not cover each other.
         let aside = (place as f32 - (row.len() as f32 - 1.0) / 2.0) * 5.0;
         let at = |index: usize, rate: f64| pos2(column(index) + aside, height(rate));
         let points = map.cells.iter().enumerate();
@@ -90,7 +90,7 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
     }
 }
 
-/// What the true rate is between with a certainty of 90 %.
+/// The interval that holds the true rate with a confidence of 90 %.
 fn interval(tries: Tries) -> (f64, f64) {
     let others = Tries {
         tries: tries.tries,

@@ -1,4 +1,4 @@
-//! The picture of how a picture would be shared between more and more cores.
+//! Chart of how tracing one picture would scale with the number of cores.
 
 use egui::Ui;
 use egui_plot::{Corner, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, Points};
@@ -9,10 +9,10 @@ use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{PictureLook, SharedPicture};
 
-/// Workers that the heading tells of.
+/// The number of workers that the heading reports on.
 const TOLD: usize = 64;
 
-/// A picture of what was simulated for one scene after the other.
+/// Draws the simulated scaling of one or more scenes.
 pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
     picture(look, |ui| {
         ui.label(egui::RichText::new(finding(pictures)).heading());
@@ -21,7 +21,7 @@ pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
     })
 }
 
-/// What the chart says, in a sentence.
+/// The heading, which sums up the chart.
 fn finding(pictures: &[SharedPicture]) -> String {
     let told = pictures.iter().filter(|picture| picture.workers == TOLD);
     let told = told.map(|picture| {
@@ -61,7 +61,7 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
             };
             let scenes = pictures.chunk_by(is_same).enumerate();
             for ((number, scene), color) in scenes.zip(colors.into_iter().cycle()) {
-                // Where colours come again, lines are dashed.
+                // When the colours repeat, lines are dashed.
                 let style = match number / colors.len() {
                     0 => LineStyle::Solid,
                     again => LineStyle::Dashed {

@@ -1,4 +1,4 @@
-//! The maps of where formulas break, and where the open scene stands on them.
+//! The tab of the stability maps: where formulas fail, and where the open scene is on these maps.
 
 use egui::{Align2, Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
 
@@ -9,27 +9,27 @@ use crate::scene::{Precision, Scene};
 use crate::ui::hint::Hinted as _;
 use crate::worker::Background;
 
-/// How many times more tries than for a first look: a second of computing.
+/// Number of tries as a multiple of those for a quick look; computing them takes a second.
 const EFFORT: u32 = 4;
 /// Width of the list of methods.
 const LIST: f32 = 440.0;
-/// Width of the bar of colours.
+/// Width of the colour scale.
 const BAR: f32 = 160.0;
-/// Room for the word beside it.
+/// Space for the label to its right.
 const BESIDE: f32 = 40.0;
 
-/// The tab's state.
+/// The state of the tab.
 #[derive(Default)]
 pub struct Stability {
     maps: Vec<Map>,
     coming: Background<Vec<Map>>,
     chosen: usize,
-    /// Whether computing them ended with a fault.
+    /// Whether the background task that computes the maps has failed.
     has_failed: bool,
 }
 
 impl Stability {
-    /// Shows the tab; the maps are computed when it is first seen.
+    /// Shows the tab; the maps are computed when it is first opened.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene) {
         if self.maps.is_empty() {
             return self.fetch(ui);
@@ -98,7 +98,8 @@ impl Stability {
         ui.request_repaint_after(std::time::Duration::from_millis(100));
     }
 
-    /// Whether the scene asks for this method; for one with a number of its own, those with another are meant.
+    /// Returns whether the scene uses this method. If its parameter has a value that was not tested, maps of the
+    /// same method with another value count.
     fn is_used(&self, scene: &Scene, map: &Map) -> bool {
         let Some(asked) = map.subject.method_in_use(&scene.render) else {
             return map.is_default;
@@ -117,7 +118,7 @@ impl Stability {
             let used = if self.is_used(scene, map) { "●" } else { " " };
             let text = format!("{used} {}: {}", map.subject.name(), map.method);
             let share = format!("{:.3} %", map.total().rate() * 100.0);
-            // The sign of what is used is in no other font.
+            // The "●" exists only in the monospace font.
             let words = RichText::new(&text).monospace();
             let row = Button::selectable(index == self.chosen, words)
                 .truncate()
@@ -131,7 +132,7 @@ impl Stability {
     }
 }
 
-/// What the colours mean.
+/// Shows the colour scale.
 fn show_scale(ui: &mut Ui, width: f32) {
     let (row, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
     let words = "Share of tries that fail";

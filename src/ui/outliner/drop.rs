@@ -1,4 +1,4 @@
-//! What rows of the outliner do with what is dragged onto them.
+//! Drag and drop onto rows of the outliner.
 
 use std::collections::HashSet;
 
@@ -10,23 +10,24 @@ use crate::ui::pack_drag::dressed;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 
-/// The share of the row of a group, from the top, where what is dropped stands above it.
+/// Height of the zone at the upper edge of a group's row, as a fraction of the row, where a drop places things
+/// above the group; if the group is folded, also at the lower edge, for below.
 const EDGE: f32 = 0.3;
 
-/// A group whose row is dragged: the places of its members.
+/// Drag payload of a group's row: the indices of its members.
 #[derive(Clone, Debug)]
 struct DraggedGroup(Vec<usize>);
 
-/// What shows where something would be dropped.
+/// How the drop target is marked.
 enum DropMark {
-    /// A frame around the row, which takes it in.
+    /// A frame around the row, which receives what is dropped.
     Frame,
-    /// A line above the row, or below it.
+    /// A line below the row if true, else above it.
     Line(bool),
 }
 
-/// Drag a row to the upper half of another to put it above that, or to the lower half to put it below; a pack onto an
-/// object or a light, to be worn by it.
+/// Makes the row of an item draggable and lets it take drops: another row is placed above it (upper half) or below
+/// it (lower half); a color pack on an object or a light is assigned to it.
 pub fn take_dropped(
     ui: &Ui,
     editor: &Editor,
@@ -46,7 +47,7 @@ pub fn take_dropped(
     let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
     let edit = match dragged {
         Some(dragged) if is_worn => dressed(editor, *dragged, item),
-        // Where groups are not listed, nothing leaves its own or enters another.
+        // While filtering, groups are not listed, so nothing leaves its group or enters another.
         Some(dragged) if is_filtered && !are_in_one_group(editor, *dragged, item) => None,
         Some(dragged) => put_beside(editor, *dragged, to),
         None => group.and_then(|group| put_group_beside(editor, &group, to)),
@@ -59,8 +60,8 @@ pub fn take_dropped(
     drop_or_mark(ui, response.rect, (edit, mark), out);
 }
 
-/// Objects that are dropped on a group are members of it, or stand above it where they are dropped on its upper edge;
-/// another group stands above it. Where its members are not listed, both may stand below it.
+/// Lets the row of a group take drops: objects become members, or are placed above the group if dropped on the
+/// row's upper edge; another group is placed above it. If the group is folded, both can also be placed below.
 pub fn take_dropped_on_group(
     ui: &Ui,
     editor: &Editor,
@@ -118,8 +119,8 @@ pub fn take_dropped_on_group(
     }
 }
 
-/// What is dragged with one: all of its kind that are selected, if it is among them. All of a group are dragged by its own
-/// row.
+/// The items that are dragged along with one: the selected ones of its kind, if it is selected. An entire group is
+/// dragged by its own row only.
 fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
     let selected = editor.selection();
     if selected.has(item) && selected.group(editor.scene()).is_none() {
@@ -129,12 +130,12 @@ fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
     }
 }
 
-/// The same of an object.
+/// The same for an object, as indices.
 fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
     Selection::Items(dragged_items(editor, item)).places(item.kind)
 }
 
-/// Whether what is dragged with one item and another one are in the same group, or in none.
+/// Returns whether all objects dragged with one item are in the same group as another item, or in none like it.
 fn are_in_one_group(editor: &Editor, dragged: Item, item: Item) -> bool {
     let group = |index: usize| Some(&editor.scene().objects.get(index)?.group);
     item.kind != ItemKind::Object
@@ -143,14 +144,14 @@ fn are_in_one_group(editor: &Editor, dragged: Item, item: Item) -> bool {
             .all(|object| group(object) == group(item.index))
 }
 
-/// What comes of an item that is dropped on the upper or the lower half of a row.
+/// The edit when an item is dropped on the upper or the lower half of a row.
 fn put_beside(editor: &Editor, dragged: Item, (item, is_after): (Item, bool)) -> Option<Edit> {
     if dragged.kind != item.kind || dragged.index == item.index {
         return None;
     }
     if item.kind != ItemKind::Object {
         let items = dragged_items(editor, dragged);
-        // Counted without them.
+        // The target index does not count the moved items.
         let before = items
             .iter()
             .filter(|other| other.index < item.index)
@@ -173,7 +174,7 @@ fn arranged(objects: Vec<usize>, (anchor, is_after): (usize, bool), group: Optio
     })
 }
 
-/// What comes of a group that is dropped there: no group is in another.
+/// The edit when a group is dropped on an object's row; groups cannot be nested.
 fn put_group_beside(
     editor: &Editor,
     DraggedGroup(objects): &DraggedGroup,
@@ -184,7 +185,8 @@ fn put_group_beside(
     has_place.then(|| arranged(objects.clone(), (item.index, is_after), None))
 }
 
-/// How far down in a row the pointer is, from 0 to less than 1, if it is there: two rows share a border.
+/// Vertical position of the pointer within a row, from 0 to less than 1 (adjacent rows share a border); `None` if
+/// it is elsewhere.
 fn share_of_row(ui: &Ui, response: &Response) -> Option<f32> {
     let at = ui.input(|input| input.pointer.interact_pos())?;
     let rect = response.rect;
@@ -192,8 +194,8 @@ fn share_of_row(ui: &Ui, response: &Response) -> Option<f32> {
     (response.contains_pointer() && share < 1.0).then_some(share)
 }
 
-/// Objects and groups that are dropped on the title below their list come last in it.
-/// Where groups are not listed, nothing is.
+/// Objects and groups dropped on the title below their list are moved to its end. While filtering, groups are not
+/// listed, and nothing is moved.
 pub fn take_dropped_at_end(
     ui: &Ui,
     editor: &Editor,
@@ -213,17 +215,17 @@ pub fn take_dropped_at_end(
     };
     let at_end = Arrangement::at_end(&editor.scene().objects, &objects, to.clone());
     let edit = at_end.map(Edit::Arrange);
-    // Where nothing else is, they leave their groups where they are.
+    // If the list has no other objects, these just leave their groups.
     let edit = edit.or_else(|| to.map(|none| Edit::Group(objects, none)));
     drop_or_mark(ui, response.rect, (edit, DropMark::Line(false)), out);
 }
 
-/// Makes the change that comes of what is dragged over a row where it is dropped now, or else shows that it would.
+/// Applies the edit if the drag is released now; otherwise marks the drop target.
 fn drop_or_mark(ui: &Ui, rect: Rect, (edit, mark): (Option<Edit>, DropMark), out: &mut UiRequests) {
     let Some(edit) = edit else { return };
     let accent = palette(ui.ctx()).accent;
     if ui.input(|input| input.pointer.any_released()) {
-        // Two rows share a border: one of them takes it.
+        // Adjacent rows share a border: only one of them may take the drop.
         DragAndDrop::clear_payload(ui.ctx());
         out.edit(edit);
         return;

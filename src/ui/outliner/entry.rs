@@ -13,10 +13,10 @@ use crate::ui::requests::UiRequests;
 use crate::ui::rows::to_bytes;
 use crate::ui::theme::{ROW, palette};
 
-/// Letters that a row has room for, about.
+/// Approximate number of letters that fit into a row; longer names have a tooltip.
 const LONG: usize = 18;
 
-/// The colour of an object or a pack: the matte one, or that without light where there is none.
+/// The colour of an object's or a color pack's matte reflection; the ambient colour if that is black.
 pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
     let name = item
         .color_pack(scene)
@@ -28,24 +28,24 @@ pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
     Some(Color32::from_rgb(red, green, blue))
 }
 
-/// The next row of the list, over its whole width.
+/// Allocates the next row of the list, over its whole width.
 pub fn row(ui: &mut Ui) -> Rect {
     ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover())
         .0
 }
 
-/// How an entry looks.
+/// The appearance of an entry.
 #[derive(Clone, Copy)]
 pub struct RowStyle {
-    /// Its symbol.
+    /// Its icon.
     pub icon: MaterialIcon,
-    /// Whether it can be seen in the picture.
+    /// Whether it is drawn in full brightness, as visible in the picture.
     pub is_bright: bool,
     /// Whether it is selected.
     pub is_selected: bool,
 }
 
-/// An entry that can be selected and dragged.
+/// Draws an entry that can be selected and dragged.
 pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     let color = if look.is_bright {
@@ -55,7 +55,7 @@ pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Respo
     };
     let texts = (
         icons::text(look.icon).color(color),
-        // A long name is cut, not the symbol.
+        // Long names are truncated, not the icon.
         egui::RichText::new(name).color(color).atom_shrink(true),
     );
     let button = Button::selectable(look.is_selected, texts)
@@ -70,7 +70,7 @@ pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Respo
     shown
 }
 
-/// Shows or hides an item by this name.
+/// A button that shows or hides the item with this name.
 pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
     let Some(visible) = item.is_visible(scene) else {
         return;
@@ -82,7 +82,7 @@ pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiReque
     }
 }
 
-/// A button that hides what is visible, and shows what is not. Whether it was pressed.
+/// A button that hides what is visible and shows what is hidden. Returns whether it was pressed.
 pub fn eye_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
     let (icon, verb) = if visible {
         (icons::VISIBLE, "Hide")
@@ -92,21 +92,21 @@ pub fn eye_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
     icons::button(ui, icon, &format!("{verb} {name}")).clicked()
 }
 
-/// What comes of a field for another name.
+/// The state of a rename field.
 pub enum Renaming {
-    /// It is being edited.
+    /// Editing goes on.
     Going,
-    /// It was left as it was.
+    /// The user left it without a new name.
     Left,
     /// The new name.
     To(String),
 }
 
-/// A field in a row for another name.
+/// A text field in a row for a new name.
 pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str) -> Renaming {
     if !ui.memory(|memory| memory.has_focus(id)) {
         ui.memory_mut(|memory| memory.request_focus(id));
-        // Typing shall replace the old name.
+        // Selected, so that typing replaces the old name.
         select_letters(ui, id, 0..name.chars().count());
     }
     if let Some(new) = name_field(ui, label, id, name) {

@@ -14,18 +14,18 @@ use crate::ui::menu_entry::{ITEM_COMMANDS, offer};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, ROW};
 
-/// What the rows of groups remember.
+/// The state of the group rows.
 #[derive(Debug, Default)]
 pub struct GroupRows {
-    /// The names of groups whose members are not listed.
+    /// Names of the groups whose members are hidden in the list.
     pub folded: Vec<String>,
-    /// The one whose name is edited.
+    /// The group that is being renamed.
     pub renaming: Option<String>,
 }
 
 impl GroupRows {
-    /// The row of a group: it folds and unfolds, selects, shows and hides its members, and takes in what is
-    /// dropped on it. Nothing while its name is edited.
+    /// Shows the row of a group, which can fold, select, show and hide its members and take objects dropped on it.
+    /// `None` while it is being renamed.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -81,7 +81,7 @@ impl GroupRows {
         Some(response)
     }
 
-    /// Folds and unfolds; whether it was folded.
+    /// A button that folds and unfolds the group; returns whether it was folded before.
     fn fold_button(&mut self, ui: &mut Ui, rect: Rect, name: &str) -> bool {
         let is_folded = self.folded.iter().any(|folded| folded == name);
         let (icon, verb) = if is_folded {
@@ -113,7 +113,7 @@ impl GroupRows {
                 Renaming::To(new) if new.trim().is_empty() => {}
                 Renaming::To(new) => {
                     let name = new.trim().to_owned();
-                    // That of another group is refused.
+                    // Renaming to the name of another group is refused.
                     let mut groups = editor.scene().objects.iter().map(|object| &object.group);
                     let is_free = !groups.any(|other| *other == name);
                     if is_free {
@@ -128,7 +128,7 @@ impl GroupRows {
     }
 }
 
-/// What is selected by a click on a group: with Shift or Ctrl besides the others, with Ctrl alone not if all of it was.
+/// The selection after a click on a group: Shift adds it, Ctrl toggles it, a plain click selects it alone.
 fn selected_with(
     ui: &Ui,
     selected: &Selection,

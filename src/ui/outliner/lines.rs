@@ -1,4 +1,4 @@
-//! The lines of the outliner, made one by one as they are asked for.
+//! The lines of the outliner, created on demand.
 
 use std::collections::HashMap;
 
@@ -8,33 +8,33 @@ use crate::editor::{Item, ItemKind, Selection};
 use crate::scene::{List, Object};
 use crate::ui::icons;
 
-/// One line of the list.
+/// A line of the list.
 pub enum Line {
     Single(&'static Selection, MaterialIcon, &'static str),
     Title(ItemKind, usize),
-    /// A group of objects, by its place in [`Groups`].
+    /// A group of objects, by its index in [`Groups`].
     Group(usize),
-    /// An item, and whether it is in a group.
+    /// An item, and whether it is listed as a member of a group.
     Entry(Item, bool),
 }
 
-/// Objects that are listed together.
+/// A group of objects.
 #[derive(Debug, Default)]
 pub struct Group {
     /// Its name.
     pub name: String,
-    /// The places of its members.
+    /// Indices of its members.
     pub members: Vec<usize>,
 }
 
 impl Group {
-    /// Its members.
+    /// Its members as items.
     pub fn items(&self) -> impl ExactSizeIterator<Item = Item> + Clone {
         self.members.iter().map(|&index| Item::object(index))
     }
 }
 
-/// What stands in the list of objects where some are in groups.
+/// A row in the list of objects if some are in groups: a group, or an object and whether it is listed as a member.
 #[derive(Clone, Copy, Debug)]
 enum Row {
     Group(usize),
@@ -52,8 +52,9 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// The groups of these objects, of which those of the names in `folded` show no members; no rows where no
-    /// object is in one. Names of groups that are gone are folded no more: a later one may be called so.
+    /// Recomputes the groups and rows if objects or folds have changed; members of groups in `folded` have no rows,
+    /// and there are no rows at all without groups. Names of groups that no longer exist are removed from `folded`:
+    /// a later group may have the same name.
     pub fn update(&mut self, objects: &List<Object>, folded: &mut Vec<String>) {
         if self.objects.is_same(objects) && self.folded == *folded {
             return;
@@ -98,21 +99,20 @@ impl Groups {
     }
 }
 
-/// Which entries of a group are listed.
+/// Which items of a kind are listed.
 pub enum Entries<'a> {
-    /// The first so many: all of them, or none.
+    /// This many items from the first: all or none.
     All(usize),
-    /// Those at these indices.
+    /// Those with these indices, in ascending order.
     Some(Vec<usize>),
-    /// All, some of them in groups.
+    /// All objects, some of them in groups.
     Grouped(&'a Groups),
 }
 
-/// All lines, made one by one as they are asked for: a list of ten thousand would take as long as
-/// everything else together.
+/// All lines, created on demand: building a list of ten thousand would take as long as everything else together.
 pub struct Lines<'a>(pub [(ItemKind, usize, Entries<'a>); 3]);
 
-/// What is above the groups.
+/// The rows above the lists of items.
 pub static SINGLES: [(Selection, MaterialIcon, &str); 3] = [
     (Selection::Camera, icons::CAMERA, "Camera"),
     (Selection::World, icons::WORLD, "World"),
@@ -177,7 +177,7 @@ impl Lines<'_> {
         None
     }
 
-    /// How many entries of a group are listed.
+    /// The number of rows of a kind.
     pub fn listed(&self, kind: ItemKind) -> usize {
         let mut groups = self.0.iter();
         let group = groups.find(|(group, ..)| *group == kind);

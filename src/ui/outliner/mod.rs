@@ -1,5 +1,5 @@
-//! The panel on the left: everything in the scene by name. Only the rows in sight are laid out: ten
-//! thousand objects cost no more than twenty, while no filter looks at all of their names.
+//! The outliner, the panel on the left: everything in the scene by name. Only visible rows are laid out: without a
+//! filter, which has to test all names, ten thousand objects cost no more than twenty.
 
 mod entry;
 
@@ -29,21 +29,21 @@ use super::theme::{GRID, ROW, palette};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
-/// How far members of a group are to the right of what is in none: behind its name, which is behind an arrow.
+/// Indentation of group members: they start at the group's name, which follows an arrow.
 const MEMBER: f32 = ROW + 2.0 * GRID;
 
-/// What the panel remembers between frames.
+/// The state of the panel between frames.
 #[derive(Debug, Default)]
 pub struct Outliner {
     filter: String,
-    /// Which of the documents it listed, see [`Editor::documents`], and what was selected in it.
+    /// The document shown last (see [`Editor::documents`]), and the item selected in it.
     listed: (u64, Option<Item>),
-    /// Where the list is scrolled to, and how much of it is seen, in points.
+    /// Scroll offset and visible height of the list, in points.
     scrolled: (f32, f32),
     folded: Vec<ItemKind>,
-    /// Whose name is edited, and what that was when it began.
+    /// The item that is being renamed, and its name when that began.
     renaming: Option<(Item, String)>,
-    /// Whether what is selected is brought into sight, wherever the list was scrolled to.
+    /// Whether to scroll to the selected item even if the selection has not changed.
     reveals: bool,
     groups: Groups,
     group_rows: GroupRows,
@@ -51,7 +51,7 @@ pub struct Outliner {
 }
 
 impl Outliner {
-    /// Starts editing the name of an item in its row.
+    /// Starts renaming an item in its row.
     pub fn rename(&mut self, scene: &Scene, item: Item) {
         self.filter.clear();
         self.folded.retain(|kind| *kind != item.kind);
@@ -64,7 +64,7 @@ impl Outliner {
         self.reveals = true;
     }
 
-    /// Starts editing the name of a group in its row.
+    /// Starts renaming a group in its row.
     pub fn rename_group(&mut self, group: Option<String>) {
         self.filter.clear();
         self.folded.retain(|kind| *kind != ItemKind::Object);
@@ -76,19 +76,19 @@ impl Outliner {
         !self.filter.trim().is_empty()
     }
 
-    /// Lists everything again. Whether not everything was listed.
+    /// Clears the filter; returns whether there was one.
     pub fn clear_filter(&mut self) -> bool {
         let is_filtered = !self.filter.is_empty();
         self.filter.clear();
         is_filtered
     }
 
-    /// Whether the arrow keys that are held walk through the list.
+    /// Returns whether the arrow keys that are held move through the list.
     pub fn has_keys(&self, ui: &Ui) -> bool {
         self.walk.has_keys(ui)
     }
 
-    /// Shows the panel and pushes what is asked for; keys are heeded if they are free.
+    /// Shows the panel and pushes the user's requests; `keys_are_free` says whether it may handle keys.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -98,7 +98,7 @@ impl Outliner {
     ) {
         ui.add_space(GRID / 2.0);
         if self.listed.0 != editor.documents() {
-            // What was looked for and named was in the other one.
+            // Filter and renaming belong to the previous document.
             self.clear_filter();
             self.renaming = None;
             self.group_rows = GroupRows::default();
@@ -107,7 +107,7 @@ impl Outliner {
         let mut groups = std::mem::take(&mut self.groups);
         groups.update(&editor.scene().objects, &mut self.group_rows.folded);
         let lines = self.lines(editor.scene(), &groups);
-        // Once for all rows: there may be many groups of many, of which many are selected.
+        // Computed once for all rows: there may be many large groups, with many selected objects.
         let marks = editor
             .selection()
             .object_marks(editor.scene().objects.len());
@@ -135,7 +135,7 @@ impl Outliner {
                 self.show_line(ui, editor, (listed, index), out);
             }
         });
-        // A name that is edited is left where its row is out of sight, or it would take the keys once it is back.
+        // Renaming ends when its row is scrolled out of sight; otherwise it would take the keys once it is back.
         if !std::mem::take(&mut self.reveals) && !rows.any(|row| self.is_renamed(listed, row)) {
             self.renaming = None;
             self.group_rows.renaming = None;
@@ -144,7 +144,7 @@ impl Outliner {
         self.scrolled = (shown.state.clamped_offset().y, shown.inner_rect.height());
     }
 
-    /// Whether the name in a row is edited.
+    /// Returns whether the name in a row is being edited.
     fn is_renamed(&self, listed: Listed, row: usize) -> bool {
         match listed.lines.get(row) {
             Some(Line::Entry(item, _)) => {
@@ -221,7 +221,7 @@ impl Outliner {
         }
     }
 
-    /// The row of what was just selected elsewhere.
+    /// The row of the item that was just selected elsewhere.
     fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
         let item = editor.selection().item();
         let is_new = self.reveals || self.listed != (editor.documents(), item);
@@ -230,7 +230,7 @@ impl Outliner {
             .flatten()
     }
 
-    /// Where to scroll to, so that a row is seen; nothing where it is.
+    /// The scroll offset that makes a row visible; `None` if it already is.
     fn to_reveal(&self, row: usize) -> Option<f32> {
         let top = row as f32 * ROW;
         let (from, height) = self.scrolled;
@@ -338,7 +338,7 @@ impl Outliner {
     ) -> Option<Response> {
         let scene = editor.shown();
         let name = item.name(scene)?;
-        // Another thing may have come in its place.
+        // The index may belong to another item by now.
         self.renaming
             .take_if(|(own, before)| *own == item && before != name);
         if self.renaming.as_ref().is_some_and(|(own, _)| *own == item) {
@@ -426,8 +426,8 @@ impl Outliner {
     }
 }
 
-/// Selects an item: with Ctrl besides the others, with Shift all that is listed from the last one on, if that is in the
-/// same list.
+/// Handles a click on an item: it is selected alone; with Ctrl, toggled; with Shift, everything between the last
+/// selected item and this one is added, if both are in the same list.
 fn select_clicked(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
     let selected = editor.selection();

@@ -1,4 +1,4 @@
-//! The arrow keys in the list: from row to row, and not from button to button.
+//! Moving through the list with the arrow keys, from row to row instead of from widget to widget.
 
 use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
@@ -6,41 +6,41 @@ use super::lines::{Group, Line, Lines, SINGLES};
 use crate::editor::{Action, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
-/// What has the arrow keys.
+/// The state of keyboard navigation.
 #[derive(Debug, Default)]
 pub struct Walk {
-    /// The frame in which the pointer was over the list last, and nothing else had the keys.
+    /// The last frame in which the pointer was over the list while no widget had the focus.
     over_in: u64,
-    /// Whether the key that is held was pressed for the list.
+    /// Whether the key that is held was first pressed for the list.
     is_held: bool,
     /// The row that has the focus.
     focused: Option<usize>,
-    /// The row that was walked to last: a group of one thing is another row than that.
+    /// The row moved to last: a group with one member and that member are different rows, but the same selection.
     last: Option<usize>,
-    /// The row that gets the focus.
+    /// The row that is to get the focus.
     goal: Option<usize>,
 }
 
-/// The list, and the groups in it.
+/// The rows of the list, with the data needed to interpret them.
 #[derive(Clone, Copy)]
 pub struct Listed<'a> {
-    /// Its lines.
+    /// The lines.
     pub lines: &'a Lines<'a>,
-    /// The groups, by their places.
+    /// The groups, by index.
     pub groups: &'a [Group],
-    /// For each object whether it is selected.
+    /// Whether each object is selected, by index.
     pub marks: &'a [bool],
 }
 
 impl Walk {
-    /// Whether the keys that are held in this frame are meant for the list.
+    /// Returns whether arrow keys held in this frame are meant for the list.
     pub fn has_keys(&self, ui: &Ui) -> bool {
         let is_down = |key: Key| ui.input(|input| input.key_down(key));
         self.over_in == ui.ctx().cumulative_frame_nr()
             && (is_down(Key::ArrowUp) || is_down(Key::ArrowDown))
     }
 
-    /// The row that a key walks to in this frame, and what selects what is in it.
+    /// The row that a key press moves to in this frame, and the action that selects it.
     pub fn step(
         &mut self,
         ui: &Ui,
@@ -79,7 +79,8 @@ impl Walk {
         Some((row, Action::Select(selected)))
     }
 
-    /// Whether Down was pressed, or Up; also again and again, if that began here.
+    /// Returns `true` if Down was pressed, `false` if Up was. Repeats count if the key was first pressed for the
+    /// list.
     fn pressed(&mut self, ui: &Ui) -> Option<bool> {
         let mut pressed = None;
         ui.input(|input| {
@@ -101,7 +102,7 @@ impl Walk {
         pressed
     }
 
-    /// Notes of a row whether it has the focus, and gives it to the one that was walked to.
+    /// Notes whether a row has the focus, and passes the focus to the row that was moved to.
     pub fn attend(&mut self, ui: &Ui, row: usize, response: &Response) {
         if self.goal == Some(row) {
             response.request_focus();
@@ -118,7 +119,7 @@ impl Walk {
 }
 
 impl Listed<'_> {
-    /// Whether an item is selected.
+    /// Returns whether an item is selected.
     pub fn is_marked(&self, editor: &Editor, item: Item) -> bool {
         match item.kind {
             ItemKind::Object => self.marks.get(item.index) == Some(&true),
@@ -126,7 +127,8 @@ impl Listed<'_> {
         }
     }
 
-    /// The row of what is selected, if it is listed: that of its group, if all of that is, or if the group is folded.
+    /// The row of the selection, if it is listed: that of the group, if exactly a whole group is selected, or if
+    /// the group is folded.
     pub fn row_of(&self, editor: &Editor) -> Option<usize> {
         let Some(item) = editor.selection().item() else {
             let mut singles = SINGLES.iter();
@@ -138,7 +140,7 @@ impl Listed<'_> {
         }
     }
 
-    /// The row of an item, or of its group, if that is folded.
+    /// The row of an item, or of its group if that is folded.
     fn row_of_item(&self, scene: &Scene, item: Item) -> Option<usize> {
         self.lines.row_of(item).or_else(|| {
             let object = scene.objects.get(item.index)?;
@@ -146,7 +148,7 @@ impl Listed<'_> {
         })
     }
 
-    /// What is listed between two entries of a list, and they; of groups that are folded, all members.
+    /// All items between two entries of a list, inclusive; folded groups contribute all of their members.
     pub fn between(&self, scene: &Scene, one: Item, other: Item) -> Option<Vec<Item>> {
         let (one, other) = (
             self.row_of_item(scene, one)?,
@@ -169,7 +171,7 @@ impl Listed<'_> {
         })
     }
 
-    /// What selects what is in a row, if anything is.
+    /// The selection of a row; `None` if the row cannot be selected.
     fn selects(&self, row: usize) -> Option<Selection> {
         Some(match self.lines.get(row)? {
             Line::Single(selection, ..) => selection.clone(),
@@ -179,7 +181,7 @@ impl Listed<'_> {
         })
     }
 
-    /// Whether what is in a row is what is selected.
+    /// Returns whether a row's items are the selection.
     fn is_selected(&self, editor: &Editor, row: usize) -> bool {
         self.selects(row).as_ref() == Some(editor.selection())
     }

@@ -1,4 +1,4 @@
-//! How fast the camera moves and turns from frame to frame, and where that jumps.
+//! Graph of the camera's speed and turn rate per frame, with marks where they jump.
 
 use egui::{Ui, Vec2b, vec2};
 use egui_plot::{HoverPosition, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
@@ -11,27 +11,27 @@ use crate::ui::hint::Hinted as _;
 use crate::ui::theme::{GRAPH, palette};
 use crate::words::counted;
 
-/// Most places that are looked at; a longer flight is looked at in larger steps.
+/// Maximum number of steps; longer flights are sampled more coarsely.
 const MOST: u64 = 4000;
-/// A step is a jump if it is so many times the one before or after, and the mean.
+/// A step is a jump if it exceeds the mean and a neighbouring step by this factor.
 const JUMP: f64 = 4.0;
-/// Smaller turns in one frame are no jumps, in degrees.
+/// Turns below this are no jumps, in degrees per step.
 const SEEN: f64 = 0.25;
-/// Steps of this share of the coordinates are rounding.
+/// Steps below this fraction of the largest coordinate are rounding errors.
 const NOISE: f64 = 1e-9;
-/// Turns in one frame that are rounding, in degrees.
+/// Turns below this are rounding errors, in degrees per step.
 const NOISE_TURN: f64 = 1e-6;
 /// Faster turns are hard to watch, in degrees per second.
 const DIZZY: f64 = 120.0;
 
-/// The curves of the flight that was looked at last.
+/// The curves of the current flight.
 #[derive(Default)]
 pub struct Graph {
     made_for: Option<(Vec<Key<Camera>>, f64)>,
     steps: Vec<PaceStep>,
 }
 
-/// From one frame to the next.
+/// The motion from one sampled frame to the next.
 #[derive(Clone, Copy, Debug)]
 struct PaceStep {
     time: f64,
@@ -39,12 +39,12 @@ struct PaceStep {
     speed: f64,
     /// Degrees per second.
     turn: f64,
-    /// Whether it is much more than beside it, or too much to watch.
+    /// Whether it is a jump, or turns too fast to watch.
     is_rough: bool,
 }
 
 impl Graph {
-    /// Draws speed and turn rate, each as a share of its highest.
+    /// Draws speed and turn rate, each relative to its maximum.
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor) {
         self.update(editor);
         let colors = palette(ui.ctx());
@@ -143,7 +143,7 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
     let each = motions.len().max(1) as f64;
     let mean = |of: fn(&CameraChange) -> f64| motions.iter().map(of).sum::<f64>() / each;
     let (mean_distance, mean_turn) = (mean(|m| m.distance), mean(|m| m.turn));
-    // What rounding alone moves is no motion.
+    // Motion caused by rounding alone does not count.
     let far = animation
         .keys
         .iter()
@@ -215,7 +215,7 @@ mod tests {
     fn a_jump_is_told_and_a_cut_is_not() {
         let even = flight(&[(0.0, 0.0), (2.0, 20.0), (4.0, 40.0)]);
         assert!(rough(&even).is_empty());
-        // What stands still only trembles in its last digit.
+        // A still camera whose position varies in the last digit only.
         let still = flight(&[
             (0.0, 300.0),
             (1.0, 300.0),

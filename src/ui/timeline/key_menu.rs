@@ -1,4 +1,4 @@
-//! What can be done to keys from the menu of one of them.
+//! The context menu of a key.
 
 use egui::Ui;
 
@@ -7,7 +7,7 @@ use crate::scene::{Easing, KeyPlace};
 use crate::ui::inspector::key_ways;
 use crate::ui::requests::UiRequests;
 
-/// Way and pace of the selected keys, of which this is one; and their end.
+/// Shows entries for way, pace and deletion of the selected keys, one of which is at `place`.
 pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
@@ -29,7 +29,7 @@ pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests)
     }
     ui.separator();
     if ui.button("Delete").clicked() {
-        // Not what else is selected when an undo was heard beside the menu.
+        // Keys only: an undo while the menu is open may have changed the selection to something else.
         out.edit(Edit::delete_keys(animation, places));
     }
 }

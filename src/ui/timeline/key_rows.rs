@@ -1,4 +1,4 @@
-//! The keys on the line of time: a row for the camera, and one for each value that has some.
+//! The keys along the time axis: a row for the camera, and one for each animated value.
 
 use std::sync::Arc;
 
@@ -15,43 +15,43 @@ use crate::ui::inspector::told_of_replaced;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
-/// Of keys that are nearer to each other, in points, the first is shown.
+/// Keys nearer to the previous one than this, in points, are not shown.
 const APART: f32 = 2.0;
-/// Unless they are selected, and no more than these are.
+/// Maximum number of selected keys that are shown regardless.
 const FEW: usize = 64;
 
-/// What the pointer does to the rows from when it is pressed to when it is let go.
+/// The pointer gesture in progress on the rows.
 #[derive(Default)]
 pub struct KeyRows {
     drag: Option<KeyDrag>,
     frame: Option<Marquee>,
 }
 
-/// A rectangle around keys, as it is drawn.
+/// A selection rectangle that is being drawn.
 struct Marquee {
-    /// Where no key was, when it began.
+    /// Where it began.
     from: Pos2,
-    /// What was selected then.
+    /// The selection when it began.
     before: Selection,
-    /// Whether those keys stay so.
+    /// Whether the keys selected then stay selected.
     adds: bool,
-    /// What is in it.
+    /// The keys within it.
     within: Keys,
 }
 
-/// Keys on their way.
+/// A drag of keys.
 struct KeyDrag {
-    /// The animation before.
+    /// The animation before the drag.
     before: Arc<Animation>,
-    /// Where they were in it.
+    /// The dragged keys in that animation.
     places: Keys,
-    /// Time of the key that the pointer holds.
+    /// Original time of the key under the pointer.
     from: f64,
     are_copies: bool,
 }
 
 impl KeyDrag {
-    /// What is said where they have replaced others, now that they are let go.
+    /// The message at the end of the drag if other keys were replaced.
     fn told(&self, now: &Animation) -> Option<String> {
         let copies = if self.are_copies {
             self.places.len()
@@ -65,12 +65,12 @@ impl KeyDrag {
 }
 
 impl KeyRows {
-    /// Whether keys are being moved, or a frame is drawn around some.
+    /// Returns whether keys are being dragged or a marquee is being drawn.
     pub fn is_busy(&self) -> bool {
         self.drag.is_some() || self.frame.is_some()
     }
 
-    /// Gives up what the pointer does.
+    /// Cancels the gesture in progress.
     pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
         if let Some(Marquee { before, .. }) = self.frame.take()
             && before != *editor.selection()
@@ -82,7 +82,7 @@ impl KeyRows {
         }
     }
 
-    /// Shows all rows: click, Shift-click, drag, Ctrl-drag, a frame around several, and a menu.
+    /// Shows all rows. Click, Shift-click, drag, Ctrl-drag, marquee and context menu work on them.
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
         if let Some(frame) = &mut self.frame {
             frame.within.clear();
@@ -91,7 +91,7 @@ impl KeyRows {
         if !animation.keys.is_empty() {
             self.row(ui, (scale, editor), (None, &animation.keys), out);
         }
-        // Of tens of thousands, those that are in sight.
+        // Of tens of thousands of rows, only the visible ones are laid out.
         let pitch = TRACK + ui.spacing().item_spacing.y;
         let (top, sight) = (ui.cursor().top(), ui.clip_rect());
         let row_at = |y: f32| ((y - top) / pitch).max(0.0) as usize;
@@ -111,7 +111,7 @@ impl KeyRows {
         self.drag_to_pointer(ui, (scale, editor), out);
     }
 
-    /// The room below the rows, where a frame can begin as well; and the frame.
+    /// Shows the space below the rows, where a marquee can start as well, and the marquee.
     pub fn show_rest(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         let room = ui.available_rect_before_wrap();
         if room.is_positive() {
@@ -121,10 +121,10 @@ impl KeyRows {
         self.show_frame(ui, editor, out);
     }
 
-    /// A press where no key is.
+    /// Handles a press where no key is.
     fn press(&mut self, ui: &Ui, response: &Response, editor: &Editor, out: &mut UiRequests) {
         let selected = editor.selection().keys();
-        // Where no key was selected, what else is stays so.
+        // If no keys are selected, the selection is something else and stays.
         if response.clicked() && !selected.is_empty() {
             out.select(Keys::new());
         }
@@ -154,7 +154,7 @@ impl KeyRows {
         let of = track.and_then(|track| tracks.get(track));
         let name = of.map_or("Camera".to_owned(), |track| track.target.name());
         label(ui, rect, &name);
-        // A frame may begin there, too.
+        // A marquee can start on the label, too.
         let room = Rect::from_min_max(
             pos2(ui.max_rect().left(), rect.top()),
             rect.left_bottom() - vec2(GRID, 0.0),
@@ -174,7 +174,8 @@ impl KeyRows {
         beside.hint(format!("{name}\nClick to select its keys"));
         ways(ui, scale, rect, keys);
         playhead(ui, scale, rect, editor);
-        // Of those that are in one place on the screen, one is seen and taken: there may be a hundred thousand.
+        // Of keys at the same place on the screen, only one is shown and can be grabbed: there may be a hundred
+        // thousand.
         let selected = editor.selection().keys();
         let are_few = selected.len() <= FEW;
         let mut last = f32::NEG_INFINITY;
@@ -222,7 +223,7 @@ impl KeyRows {
         }
     }
 
-    /// A click selects, a drag starts to move.
+    /// A click selects a key, a drag starts to move it.
     fn pick(
         &mut self,
         response: &Response,
@@ -240,7 +241,7 @@ impl KeyRows {
         }
         if response.drag_started() {
             let places = held(selected, place);
-            // What was done before is none of it, and stays where it is taken back.
+            // Earlier edits are not part of the drag, and stay if it is cancelled.
             out.actions.push(Action::BeginGesture);
             self.drag = Some(KeyDrag {
                 before: Arc::clone(&editor.scene().animation),
@@ -251,7 +252,7 @@ impl KeyRows {
         }
     }
 
-    /// Moves what is dragged to the frame at the pointer.
+    /// Moves the dragged keys to the frame at the pointer.
     fn drag_to_pointer(
         &mut self,
         ui: &Ui,
@@ -267,7 +268,7 @@ impl KeyRows {
             self.drag = None;
             return;
         }
-        // Out of the window, it waits where it was.
+        // Nothing moves while the pointer is outside the window.
         let Some(at) = at else { return };
         let before = &held.before;
         let to = before.time_of(before.nearest_frame(scale.time(at.x)));
@@ -286,7 +287,7 @@ impl KeyRows {
         }
     }
 
-    /// Notes the keys of a row that are in the frame, of those that are in sight.
+    /// Collects the keys of a visible row that are within the marquee.
     fn note_framed<T>(
         &mut self,
         ui: &Ui,
@@ -308,7 +309,7 @@ impl KeyRows {
         frame.within.extend(places);
     }
 
-    /// Selects what is in the frame, and draws it.
+    /// Selects the keys within the marquee, and draws it.
     fn show_frame(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
         let Some(frame) = &self.frame else { return };
         let mut places = frame.within.clone();
@@ -329,14 +330,14 @@ impl KeyRows {
 }
 
 impl Marquee {
-    /// From where it began to the pointer.
+    /// The rectangle from its start to the pointer.
     fn around(&self, ui: &Ui) -> Option<Rect> {
         let to = ui.input(|input| input.pointer.latest_pos())?;
         Some(Rect::from_two_pos(self.from, to))
     }
 }
 
-/// Lines between keys: straight ones thin, curves thick, none where it is held.
+/// Draws lines between keys: thin for linear interpolation, thick for curves, none if the value is held.
 fn ways<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
     let color = palette(ui.ctx()).line;
     for pair in keys.windows(2) {

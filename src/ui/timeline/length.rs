@@ -1,4 +1,4 @@
-//! How long the flight of the camera is.
+//! The field for the length of the camera flight.
 
 use egui::Ui;
 
@@ -8,12 +8,12 @@ use crate::scene::SAME_TIME;
 use crate::ui::number::Field;
 use crate::ui::requests::UiRequests;
 
-/// The shortest flight that is asked for, in seconds.
+/// The shortest flight that can be set, in seconds.
 const SHORTEST: f64 = 0.1;
-/// Half of the last digit that is shown of times, in seconds.
+/// Half of the last digit shown of times, in seconds.
 const SHOWN: f64 = 5e-4;
 
-/// How long the flight of the camera is; another length stretches it.
+/// Shows the length of the camera flight; changing it stretches the flight in time.
 pub fn show_length(
     ui: &mut Ui,
     editor: &Editor,
@@ -31,7 +31,7 @@ pub fn show_length(
         hint: "Length of the flight; another one stretches it, and the keys of values with it",
         unit: " s",
         default: before,
-        // Keys of values that are far behind it may leave it less.
+        // Value keys far behind the flight may limit it to less than that.
         range: SHORTEST..=longest_flight(animation).max(SHORTEST),
         speed: Some(0.05),
     };
@@ -39,15 +39,15 @@ pub fn show_length(
     if seconds != before {
         seconds = to_frames(seconds + first.time, animation.frames_per_second) - first.time;
     }
-    // What is typed as it was is the same but for its last bit.
+    // Retyping the shown value may change its last bit.
     if (seconds - before).abs() > SAME_TIME {
         out.edit(Edit::animation(stretched(animation, seconds), "Stretch"));
         out.time(Time::Stretched(first.time, seconds / before));
     }
 }
 
-/// The time of a frame, where one is as near as what is shown of it tells: of 14.35714 s, 14.357 typed again would leave
-/// out the last one.
+/// Snaps a time to a frame within the precision of the display: with a flight of 14.35714 s, retyping the 14.357
+/// shown would otherwise drop the last frame.
 fn to_frames(seconds: f64, frames_per_second: f64) -> f64 {
     let frame = (seconds * frames_per_second).round() / frames_per_second;
     if (frame - seconds).abs() < SHOWN {

@@ -1,4 +1,4 @@
-//! The timeline: playing, recording, keys on a line of time, and what they do to speed.
+//! The timeline panel: playback, recording, the keys along a time axis, and a graph of the resulting speed.
 
 mod scale;
 
@@ -38,32 +38,32 @@ use crate::editor::Editor;
 use crate::scene::Animation;
 use crate::ui::hint::Hinted as _;
 
-/// Least time that the line shows, in seconds.
+/// Minimum length of the time axis, in seconds.
 const LEAST: f64 = 4.0;
-/// Room behind the last key, as a share of the time before it.
+/// Space after the last key, as a fraction of the time before it.
 const BEHIND: f64 = 0.08;
-/// How many times as much time the wheel shows as is needed: there is room for keys to come.
+/// Maximum length when zoomed out, as a multiple of the default, to leave room for further keys.
 const ROOM: f64 = 4.0;
-/// How much of its width labels of tracks have.
+/// Width of the track labels, as a fraction of the panel's.
 const LABEL_SHARE: f32 = 0.14;
 
-/// What the panel remembers.
+/// The state of the panel.
 pub struct TimelinePanel {
-    /// Whether speed and turns are shown below the keys.
+    /// Whether the graph of speed and turn rate is shown below the keys.
     shows_graph: bool,
-    /// First and last time that the line shows; they stay while something is dragged on it.
+    /// First and last time shown; fixed while something is dragged.
     span: (f64, f64),
-    /// The part of it that was chosen, if not all is shown.
+    /// The section that the user zoomed to, if not everything is shown.
     chosen: Option<(f64, f64)>,
-    /// The document that the part is of.
+    /// The document that this section belongs to.
     document: u64,
-    /// The frame of the window in which the pointer was over it.
+    /// The UI frame in which the pointer was last over the panel.
     hovered_in: u64,
-    /// The frame of the window in which it was shown last.
+    /// The UI frame in which the panel was last shown.
     frame: u64,
     rows: KeyRows,
     graph: Graph,
-    /// Seconds of pauses, of the animation that they were counted for.
+    /// Cached duration of the pauses, with the animation it was computed for.
     paused: Option<(Arc<Animation>, f64)>,
 }
 
@@ -84,7 +84,7 @@ impl Default for TimelinePanel {
 }
 
 impl TimelinePanel {
-    /// Shows the panel. `per_second` is how many pictures a second have been on screen.
+    /// Shows the panel. `per_second` is the number of pictures shown per second.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -142,7 +142,7 @@ impl TimelinePanel {
         if self.rows.is_busy() && take_escape(ui) {
             self.rows.give_up(editor, out);
         }
-        // What time it is stays in sight, however many rows there are.
+        // The ruler stays visible when many rows are scrolled.
         ruler::show(ui, &scale, editor, out);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             if !animation.keys.is_empty() {
@@ -156,12 +156,12 @@ impl TimelinePanel {
         });
     }
 
-    /// Shows all of the line again.
+    /// Resets the zoom to show everything.
     pub fn fit(&mut self) {
         self.chosen = None;
     }
 
-    /// Seconds of pauses; of many keys they are not counted anew in every frame of the window.
+    /// Seconds of pauses. Cached, as counting them in every UI frame is slow with many keys.
     fn paused(&mut self, animation: &Arc<Animation>) -> f64 {
         let known = self.paused.take();
         let known = known.filter(|(of, _)| Arc::ptr_eq(of, animation));
@@ -169,17 +169,17 @@ impl TimelinePanel {
         self.paused.insert(known.unwrap_or_else(count)).1
     }
 
-    /// Whether keys are being moved, or a frame is drawn around some.
+    /// Returns whether keys are being dragged or a marquee is being drawn.
     pub fn is_dragging(&self) -> bool {
         self.rows.is_busy()
     }
 
-    /// Whether the pointer is over the line, in this frame of the window.
+    /// Returns whether the pointer is over the panel in this UI frame.
     pub fn is_hovered(&self, frame: u64) -> bool {
         self.hovered_in == frame
     }
 
-    /// Ctrl and the wheel show less or more of the line, the middle button moves it.
+    /// Zooms with Ctrl and the wheel, and pans with the middle button.
     fn zoom(&mut self, ui: &Ui, (scale, area): (&Scale, Rect), end: f64) {
         let at = ui.input(|input| input.pointer.hover_pos());
         let at = at.filter(|_| ui.rect_contains_pointer(area));
@@ -201,7 +201,7 @@ impl TimelinePanel {
         let held = scale.time(at.x);
         let most = end * ROOM;
         let seconds = ((last - start) / f64::from(factor)).clamp(LEAST / 20.0, most);
-        // What the pointer is over stays there.
+        // The time under the pointer stays in place.
         let start = held - (held - start) * seconds / (last - start) + by;
         let start = start.clamp(0.0, (most - seconds).max(0.0));
         let is_all = start == 0.0 && seconds == end;
@@ -209,7 +209,7 @@ impl TimelinePanel {
     }
 }
 
-/// Where the line of time ends on screen, in seconds: behind the last key, and the playhead.
+/// The end of the time axis in seconds: some way after the last key and the playhead.
 fn shown_end(animation: &Animation, playhead: f64) -> f64 {
     (animation.duration().max(playhead) * (1.0 + BEHIND)).max(LEAST)
 }

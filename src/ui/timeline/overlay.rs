@@ -1,4 +1,4 @@
-//! The flight in the view: its way, a tick for each frame, and its keys, which can be dragged.
+//! The flight drawn in the viewport: its path, a tick for each frame, and its keys, which can be dragged.
 
 use std::collections::HashSet;
 
@@ -14,41 +14,41 @@ use crate::ui::theme::{Palette, in_picture};
 use crate::ui::tools::Screen;
 use crate::worker::Question;
 
-/// Most ticks that are drawn.
+/// Maximum number of ticks.
 const MOST_TICKS: u64 = 1500;
-/// Length of a drawn camera, as a share of the flight's extent.
+/// Length of a drawn camera, as a fraction of the flight's extent.
 const CAMERA_SHARE: f64 = 0.06;
-/// How near to a key the pointer must be, in points.
+/// Half the size of the area around a key that reacts to the pointer, in points.
 const REACH: f32 = 9.0;
-/// Cameras nearer than this share of the flight's extent fade.
+/// Drawn cameras nearer to the eye than this fraction of the flight's extent fade.
 const FADING: f64 = 0.3;
-/// Of keys within so many points, one can be taken.
+/// Size in points of the grid cells in which only one key reacts to the pointer.
 const CELL: f32 = 4.0;
-/// Most selected keys that are all drawn as cameras.
+/// Maximum number of selected keys for which each is drawn as a camera.
 const FEW: usize = 64;
-/// Between cameras nearer to each other, in points, only dots are drawn.
+/// Minimum distance between drawn cameras in points; keys closer to one are drawn as dots.
 const APART: f32 = 30.0;
-/// Radius of the dot where a camera stands, in points.
+/// Radius of the dot at a camera's eye, in points.
 const EYE: f32 = 3.5;
-/// Most points that a drawn camera is wide.
+/// Maximum width of a drawn camera, in points.
 const LARGEST: f32 = 60.0;
-/// How strongly what is hidden is drawn.
+/// Opacity of hidden parts.
 const HIDDEN: f32 = 0.22;
 
-/// What was found for the last picture.
+/// The overlay's data for the last picture.
 #[derive(Default)]
 pub struct Overlay {
     made_for: Option<(u64, u64)>,
-    /// Each tick in world space, and whether nothing stands before it.
+    /// The ticks in world space, each with whether it is visible from the camera.
     ticks: Vec<(DVec3, bool)>,
-    /// The flight as it was recorded, for how far the keys are off it.
+    /// The recorded positions, drawn to show how far the keys deviate from them.
     recorded: Vec<DVec3>,
-    /// The key that is dragged, and how deep it is in the view.
+    /// The dragged key, and its depth in the view.
     dragged: Option<(usize, f64)>,
 }
 
 impl Overlay {
-    /// Draws the flight over the picture at `view`, unless the picture is the flight's own.
+    /// Draws the flight over the picture at `view`, unless the picture shows the shot itself.
     pub fn show(&mut self, ui: &mut Ui, editor: &Editor, view: Rect, out: &mut UiRequests) {
         let animation = &editor.scene().animation;
         if animation.keys.is_empty() || editor.looks_through() {
@@ -74,7 +74,7 @@ impl Overlay {
         let selected = editor.selection().keys();
         let mut drawn: Vec<Pos2> = Vec::new();
         let mut taken = HashSet::new();
-        // One that is selected among few is drawn where it is on others, and taken there.
+        // Among few selected keys, each is drawn and can be grabbed even where it covers others.
         let are_few = selected.len() <= FEW;
         for (place, key) in animation.keys.iter().enumerate() {
             let is_on = selected.contains(&KeyPlace::of_camera(place));
@@ -127,7 +127,8 @@ impl Overlay {
             .step_by(stride)
             .map(|sample| sample.1)
             .collect();
-        // What is hidden is found out elsewhere; until then, ticks that were there stay as they were.
+        // Visibility is determined by the worker; until the answer, ticks keep that of the old ones with the same
+        // index.
         let known = |index: usize| self.ticks.get(index).is_none_or(|(_, is_clear)| *is_clear);
         let ticks = places.iter().enumerate();
         self.ticks = ticks.map(|(index, &point)| (point, known(index))).collect();
@@ -135,7 +136,7 @@ impl Overlay {
         out.questions.push(Question::Visible(key.0, camera, places));
     }
 
-    /// Takes up which ticks are hidden in the picture of this revision.
+    /// Takes over the visibility of the ticks, if it belongs to the current picture.
     pub fn take_visible(&mut self, revision: u64, ticks: Vec<(DVec3, bool)>) {
         if self
             .made_for
@@ -153,7 +154,7 @@ impl Overlay {
             .collect();
         let share = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN };
         let shade = |is_clear: bool| colors.curve.gamma_multiply(share(is_clear));
-        // On a light ground, a dark edge.
+        // A dark edge keeps it visible on light backgrounds.
         for (width, color) in [(3.0, colors.halo.gamma_multiply(0.5)), (1.5, colors.curve)] {
             for pair in places.windows(2) {
                 if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
@@ -169,7 +170,7 @@ impl Overlay {
         }
     }
 
-    /// Size of the flight in world units.
+    /// Diagonal of the flight's bounding box in world units; 1 if it is a point.
     fn extent(&self) -> f64 {
         let points = self.ticks.iter().map(|(point, _)| (*point, *point));
         let all = points.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
@@ -177,7 +178,7 @@ impl Overlay {
         if extent > 0.0 { extent } else { 1.0 }
     }
 
-    /// Whether a key is being dragged, which may be out of sight by now.
+    /// Returns whether a key is being dragged; it may have left the picture.
     pub fn is_dragging(&mut self, ctx: &Context) -> bool {
         if !ctx.input(|input| input.pointer.any_down()) {
             self.dragged = None;
@@ -185,8 +186,8 @@ impl Overlay {
         self.dragged.is_some()
     }
 
-    /// A key is clicked to be selected, with Shift besides others, and dragged in the plane of the view with all that is
-    /// selected; Esc takes that back.
+    /// Handles the pointer at a key: a click selects it (Shift: toggles it in the selection), and a drag moves it,
+    /// with the rest of the selection, parallel to the picture plane. Escape cancels the drag.
     fn handle(
         &mut self,
         ui: &Ui,
@@ -200,7 +201,7 @@ impl Overlay {
         let Some(at) = screen.place(position) else {
             return;
         };
-        // One that is dragged out of the picture may be brought back.
+        // A key dragged out of the picture can still be dragged back.
         let is_held = self.dragged.is_some_and(|(held, _)| held == place);
         if !is_held && !screen.view.contains(at) {
             return;
@@ -234,7 +235,7 @@ impl Overlay {
             }
             return;
         };
-        // As deep in the view as it was: along the ray by as much more as that leans.
+        // Keeps the depth along the view axis; the distance along the ray depends on the ray's angle to it.
         let (_, straight) = screen.ray(screen.view.center());
         let (_, before) = screen.ray(at);
         let (origin, direction) = screen.ray(pointer);
@@ -246,14 +247,14 @@ impl Overlay {
     }
 }
 
-/// How strongly a camera is drawn: what is near to the eye covers much of the picture and says little.
+/// Opacity of a camera: one near the eye would cover much of the picture without being informative.
 fn fade(screen: &Screen, extent: f64, position: DVec3) -> f32 {
     let (eye, _) = screen.ray(screen.view.center());
     let far = extent * FADING;
     (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
 }
 
-/// A pyramid from the eye to the frame of the picture, or the frame alone where rays run side by side.
+/// Draws a camera as a pyramid from its eye to its frame; if it is orthographic, as the frame alone.
 fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, color: Color32) {
     let Some(framing) = camera.framing() else {
         return;
@@ -278,7 +279,7 @@ fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, c
     if width > LARGEST {
         corners = frame(size * f64::from(LARGEST / width));
     }
-    // What runs side by side has no size to choose.
+    // The size of an orthographic frame is fixed: leave it out if it is too large.
     if Rect::from_points(&corners).size().max_elem() > 4.0 * LARGEST {
         corners.clear();
     }
@@ -287,7 +288,7 @@ fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, c
             painter.line_segment([eye, *corner], stroke);
         }
     }
-    // One by one: the corners of a line through points that nearly coincide would be spikes.
+    // Separate segments, as the joins of a polyline through nearly coinciding points would form spikes.
     for (n, corner) in corners.iter().enumerate() {
         painter.line_segment([*corner, corners[(n + 1) % corners.len()]], stroke);
     }

@@ -1,4 +1,4 @@
-//! Seconds and frames above the keys, and where the playhead is.
+//! The ruler above the keys, with seconds, frames and the playhead.
 
 use egui::{Align2, FontId, PointerButton, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -8,16 +8,16 @@ use crate::editor::{Editor, Time};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, palette};
 
-/// Least room between two times that are written out.
+/// Minimum distance between two labelled times, in points.
 const APART: f32 = 64.0;
-/// Least room between two marks of frames.
+/// Minimum distance between two frame marks, in points.
 const FRAME_APART: f32 = 4.0;
-/// Steps of written times, in seconds.
+/// Possible intervals of labelled times, in seconds.
 const STEPS: [f64; 13] = [
     0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0, 14_400.0, 43_200.0,
 ];
 
-/// Seconds, frames, and the playhead, which follows the pointer.
+/// Shows seconds, frames and the playhead, which can be clicked and dragged to a time.
 pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
     let (rect, response) = band(ui, scale, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
         .add(Shape::convex_polygon(corners, colors.accent, Stroke::NONE));
 }
 
-/// A line at the time that is on show.
+/// Draws a vertical line at the time on screen.
 pub fn playhead(ui: &Ui, scale: &Scale, rect: Rect, editor: &Editor) {
     let time = editor.shown_time();
     if scale.shows(time) {

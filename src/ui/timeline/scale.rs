@@ -1,11 +1,11 @@
-//! From time to place on the screen, and back.
+//! Mapping between times and positions on the screen.
 
-/// From time to place on the screen.
+/// Linear mapping from times to horizontal positions on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
-    /// Where it begins, in points.
+    /// Left end, in points.
     pub left: f32,
-    /// Width of all of it, in points.
+    /// Width, in points.
     pub width: f32,
     /// The time at its left end, in seconds.
     pub start: f64,
@@ -14,22 +14,22 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Place of a time.
+    /// The position of a time.
     pub fn x(&self, time: f64) -> f32 {
         self.left + ((time - self.start) / self.seconds()) as f32 * self.width
     }
 
-    /// The time of a place.
+    /// The time at a position.
     pub fn time(&self, x: f32) -> f64 {
         self.start + f64::from((x - self.left) / self.width) * self.seconds()
     }
 
-    /// Whether a time is shown.
+    /// Returns whether a time is within the range shown.
     pub fn shows(&self, time: f64) -> bool {
         (self.start..=self.end).contains(&time)
     }
 
-    /// How much time is shown.
+    /// Length of the range shown, in seconds.
     pub fn seconds(&self) -> f64 {
         self.end - self.start
     }

@@ -1,4 +1,4 @@
-//! Strips of the line of time, and what is drawn on each of them.
+//! Horizontal strips along the time axis, and what is drawn on them.
 
 use egui::{Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
@@ -6,23 +6,23 @@ use super::scale::Scale;
 use crate::scene::{KeyPlace, Keys, without_number};
 use crate::ui::theme::{GRID, TRACK, palette};
 
-/// Half the width of a key.
+/// Half the width of a key's symbol, in points.
 pub const KEY: f32 = 5.0;
-/// Size of written times.
+/// Font size of times, in points.
 pub const SMALL: f32 = 10.0;
 
-/// A strip as wide as the time, with the part for a label to its left.
+/// Allocates a strip along the time axis, with space for a label to its left. Returns its rectangle and response.
 pub fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
     let (whole, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
     let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, whole.y_range());
     let id = ui.scope_id().with(("band", whole.top() as i32));
-    // The first moment can be hit from a little to its left.
+    // Widened a little, so that the first moment is easy to hit.
     let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
     (rect, response)
 }
 
-/// Writes to the left of a strip what it is about. What a name is too long for is cut from the name, and not from its
-/// number and what stands behind it.
+/// Writes the label to the left of a strip. If it is too long, the name is shortened, but not its number or the
+/// property that follows.
 pub fn label(ui: &Ui, rect: Rect, text: &str) {
     let colors = palette(ui.ctx());
     let room = Rect::from_min_max(pos2(ui.max_rect().left(), rect.top()), rect.left_bottom());
@@ -34,7 +34,7 @@ pub fn label(ui: &Ui, rect: Rect, text: &str) {
     let (mut galley, width) = (layout(text.to_owned()), room.width() - 3.0 * GRID);
     let mut kept = name.chars().count();
     while galley.size().x > width && kept > 1 {
-        // As many letters as would do if all were alike.
+        // An estimate that assumes letters of equal width.
         kept = (kept - 1).min((kept as f32 * width / galley.size().x) as usize + 1);
         let name: String = name.chars().take(kept).collect();
         galley = layout(format!("{}…{what}", name.trim_end()));
@@ -43,13 +43,13 @@ pub fn label(ui: &Ui, rect: Rect, text: &str) {
     painter.galley(at, galley, colors.muted);
 }
 
-/// Where a name ends that may have a number, and its property behind it.
+/// Byte index at which a name ends that may be followed by a number and a property.
 fn end_of_name(text: &str) -> usize {
     let end = text.rfind(": ").unwrap_or(text.len());
     without_number(&text[..end]).len()
 }
 
-/// What is selected by a click on a key: with `adds`, it is selected beside the others, or no more.
+/// The selection after a click on a key; `adds` toggles the key in the current selection.
 pub fn picked(selected: &Keys, place: KeyPlace, adds: bool) -> Keys {
     if !adds {
         return Keys::from([place]);
@@ -61,7 +61,7 @@ pub fn picked(selected: &Keys, place: KeyPlace, adds: bool) -> Keys {
     places
 }
 
-/// What a drag of a key is of: all that is selected, if it is among it.
+/// The keys that a drag of a key moves: the whole selection, if the key is part of it.
 pub fn held(selected: &Keys, place: KeyPlace) -> Keys {
     if selected.contains(&place) {
         selected.clone()
@@ -70,7 +70,7 @@ pub fn held(selected: &Keys, place: KeyPlace) -> Keys {
     }
 }
 
-/// Draws a key: what is held is a square.
+/// Draws a key as a diamond; as a square if its value is held until the next key.
 pub fn diamond(ui: &Ui, at: Pos2, fill: Color32, is_cut: bool) {
     let corners = if is_cut {
         let half = KEY * 0.8;

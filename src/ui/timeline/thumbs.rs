@@ -1,4 +1,4 @@
-//! Small pictures: what the keys see, above them, and the shot in a corner of the view.
+//! Thumbnails: the views of the keys along the timeline, and the shot in a corner of the viewport.
 
 use std::sync::Arc;
 
@@ -16,28 +16,28 @@ use crate::ui::theme::{GRID, THUMB, palette};
 use crate::ui::upload::{paint, whole};
 use crate::worker::ThumbnailJob;
 
-/// The name of the shot's picture; keys are named by their places.
+/// Name of the shot's thumbnail; those of keys are named by index.
 const SHOT: u64 = u64::MAX;
-/// Most keys that have a picture.
+/// Maximum number of keys with a thumbnail.
 const MOST: usize = 200;
-/// Width of the shot's picture, as a share of the view's.
+/// Width of the shot's thumbnail, as a fraction of the viewport's.
 const SHARE: f32 = 0.28;
 
-/// The pictures, and what they were asked for.
+/// The thumbnails, and what they were requested for.
 #[derive(Default)]
 pub struct Thumbs {
     keys: Vec<Option<TextureHandle>>,
     shot: Option<TextureHandle>,
-    /// Every key of which there is one, counted by this, has a picture.
+    /// Every `stride`-th key has a thumbnail.
     stride: usize,
-    /// The scene whose keys were asked for, and the screen's scale.
+    /// The scene whose keys were requested, and the scale of the screen in percent.
     asked: Option<(Arc<Scene>, u32)>,
-    /// The scene, time, and size that the shot was asked for.
+    /// Scene, time and pixel height that the shot was requested for.
     asked_shot: Option<(Arc<Scene>, f64, u32)>,
 }
 
 impl Thumbs {
-    /// Takes finished pictures up.
+    /// Takes over finished thumbnails.
     pub fn take(&mut self, ctx: &Context, pictures: Vec<(u64, Image)>) {
         for (name, image) in pictures {
             let picture = whole(&image);
@@ -54,8 +54,8 @@ impl Thumbs {
         }
     }
 
-    /// What is to be traced now, if anything: the shot whenever it changes, the keys when the hand
-    /// rests.
+    /// Returns the thumbnails to trace now, if any: the shot whenever it changes, the keys only when nothing is
+    /// dragged, played or recorded.
     pub fn wishes(
         &mut self,
         ctx: &Context,
@@ -100,7 +100,7 @@ impl Thumbs {
         if is_resting && asked.is_none_or(|asked| !shows_same(&asked.0, scene) || asked.1 != scale)
         {
             self.asked = Some((Arc::clone(scene), scale));
-            // Where there are very many keys, some of them have pictures, evenly.
+            // With very many keys, only every `stride`-th one has a thumbnail.
             let stride = keys.len().div_ceil(MOST).max(1);
             if self.stride != stride {
                 self.keys.clear();
@@ -117,7 +117,7 @@ impl Thumbs {
         (!wishes.is_empty()).then_some(wishes)
     }
 
-    /// The keys' pictures above them, as many as have room.
+    /// Draws the thumbnails at their keys, skipping those that would overlap.
     pub fn show(&self, ui: &mut Ui, scale: &Scale, animation: &Animation) {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), THUMB), Sense::hover());
         let mut free = f32::NEG_INFINITY;
@@ -138,8 +138,8 @@ impl Thumbs {
         }
     }
 
-    /// The shot in a corner of the view, while the view is not the shot itself. What is behind it is not under the
-    /// pointer.
+    /// Draws the shot in a corner of the viewport, unless the viewport itself shows it. It takes the pointer from
+    /// what is behind it.
     pub fn show_shot(&self, ui: &Ui, editor: &Editor, view: Rect, out: &mut UiRequests) {
         let Some(texture) = self.shot.as_ref().filter(|_| !editor.looks_through()) else {
             return;
@@ -164,12 +164,12 @@ impl Thumbs {
     }
 }
 
-/// Whether pictures of the keys of one are those of the other. The camera of the view is in none of them.
+/// Returns whether the thumbnails of two scenes are the same. The viewport's camera does not matter.
 fn shows_same(one: &Scene, other: &Scene) -> bool {
     one.has_same_look(other) && Arc::ptr_eq(&one.animation, &other.animation)
 }
 
-/// The lower right corner of the view.
+/// Rectangle of the shot in the lower right corner of the viewport.
 fn shot_place(view: Rect, aspect: f32) -> Rect {
     let width = (view.width() * SHARE).round();
     let size = vec2(width, (width / aspect).round());

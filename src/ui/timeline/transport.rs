@@ -1,4 +1,4 @@
-//! The buttons above the keys.
+//! The controls above the keys.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use std::sync::Arc;
@@ -17,18 +17,18 @@ use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::words::counted;
 
-/// Width of a window in which everything has its place, in points.
+/// Minimum window width in points to show all controls.
 const WIDE: f32 = 1040.0;
-/// Width of a window in which all but the rates has its place, in points.
+/// Minimum window width in points to show all controls but the rates.
 const NARROW: f32 = 860.0;
-/// Width of a window in which buttons have words beside their symbols, in points.
+/// Minimum window width in points to show buttons with text.
 const TINY: f32 = 720.0;
-/// Seconds that a ready-made flight takes.
+/// Duration of a preset flight, in seconds.
 const PRESET_SECONDS: f64 = 8.0;
-/// Samples of a recording of a minute or two.
+/// Number of samples beyond which a recording counts as long: one of a minute or two.
 const LONG: usize = 5000;
 
-/// Playing, keys, and what time it is.
+/// Shows the controls for playback and keys, and the current time.
 pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
     let timeline = editor.timeline();
     let animation = &editor.scene().animation;
@@ -112,7 +112,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             .accessible_name("More of the timeline")
             .hint("Length, frames per second, playing speed, graph of the speed; in a narrow window the frame and the shot as well");
     }
-    // Beside the shot, where nothing else has keys, the picture stays as it is.
+    // If the view is not the shot, and nothing but the camera has keys, the picture does not change during
+    // playback.
     if timeline.is_playing && (editor.looks_through() || per_second > 0.0) {
         let text = format!(
             "{per_second:.1} of {:.0} fps",
@@ -123,7 +124,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     }
 }
 
-/// Which frame is on show, of how many.
+/// Shows the current frame as an editable field, and the number of frames.
 fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let before = animation.frame_at(editor.timeline().playhead) as f64;
@@ -180,7 +181,7 @@ fn record_button(ui: &mut Ui, editor: &Editor, has_words: bool, out: &mut UiRequ
     }
 }
 
-/// How long it is, and how fast; each with its name, where they stand below each other.
+/// Shows length, frame rate and playing speed; with their names, if they are below each other in the menu.
 fn rates(
     ui: &mut Ui,
     editor: &Editor,
@@ -233,12 +234,12 @@ fn rates(
     }
 }
 
-/// The recorded flight, and how closely the keys follow it.
+/// Shows the controls of a recorded flight: the tolerance of its keys, and how closely they follow it.
 pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;
-    // Of a long one, keys take seconds to make: they are, once the slider is let go.
+    // Making keys of a long recording takes seconds, so it is done when the slider is released.
     let is_long = take.samples.len() > LONG;
     let held = Id::unique(("tolerance of a long recording", Arc::as_ptr(take).addr()));
     let mut tolerance = ui.data(|data| data.get_temp(held)).unwrap_or(before);
@@ -259,12 +260,12 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
         }
         was_held && !is_held
     });
-    // The widget rounds what it is given: that is no wish of the user's.
+    // The widget rounds its value, which is no change by the user.
     let is_other = (tolerance - before).abs() > 0.006;
     if is_other && !is_held && (slider.changed() || is_let_go) {
         out.time(Time::Simplify(tolerance));
     }
-    // Behind what is dragged, which must not move.
+    // To the right of the slider, which must not move during a drag.
     let text = format!(
         "{} samples → {}",
         take.samples.len(),
@@ -298,7 +299,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     }
 }
 
-/// Minutes, seconds and tenths.
+/// Formats a time as minutes, seconds and tenths.
 pub fn clock(seconds: f64) -> String {
     let tenths = (seconds * 10.0).round() as u64;
     format!(
@@ -309,14 +310,14 @@ pub fn clock(seconds: f64) -> String {
     )
 }
 
-/// Copies of the selected keys, the earliest at the playhead; nothing where no keys are selected.
+/// Copies the selected keys so that the earliest is at the playhead; no actions if no keys are selected.
 fn copied_keys(editor: &Editor) -> Vec<Action> {
     let (animation, places) = (&editor.scene().animation, editor.selection().keys());
     let Some((first, _)) = animation.span_of(places) else {
         return Vec::new();
     };
     let shown = editor.shown_time();
-    // Recorded keys are between frames.
+    // Recorded keys may lie between frames, so frames are compared.
     if animation.nearest_frame(first) == animation.nearest_frame(shown) {
         let told = "Copies of keys go to the playhead: move it to where they shall be";
         return vec![Action::Tell(told.to_owned())];
@@ -332,11 +333,11 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     made.into_iter().chain(told).collect()
 }
 
-/// What a command of the timeline comes to, where it makes sense; nothing of others.
+/// The actions of a timeline command; none for other commands, or if they do not apply.
 pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
     let animation = &editor.scene().animation;
     let time = editor.shown_time();
-    // The playhead goes to the frame nearest to a key, which may be before or behind it.
+    // Keys are compared by nearest frame, as the playhead stops on frames and keys may lie between them.
     let frame = |time: f64| animation.nearest_frame(time);
     let times = || {
         let tracks = animation.tracks.iter().flat_map(|track| &track.keys);
@@ -347,7 +348,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
     match command {
         Command::Play => timed(Time::Play(!editor.timeline().is_playing)),
         Command::FirstFrame => timed(Time::Seek(0.0)),
-        // The last key may be nearer to a frame that nobody makes.
+        // The frame nearest to the last key may be beyond the last frame.
         Command::LastFrame => {
             let last = animation.time_of(animation.frame_count());
             timed(Time::Seek(last))
@@ -403,7 +404,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
                 let told = "This changes nothing of the flight as it is";
                 return vec![Action::Tell(told.to_owned())];
             }
-            // Where the flight has ended by then, nothing is left to be seen.
+            // If the flight now ends before the playhead, the playhead moves to the end.
             let end = changed.duration();
             let edit = Action::Edit(Edit::animation(changed, retime.words().0));
             let is_behind = editor.timeline().playhead > end;

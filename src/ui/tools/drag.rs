@@ -1,4 +1,4 @@
-//! What the pointer drags in the picture.
+//! Drags in the picture.
 
 use egui::{CursorIcon, Event, Key, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 use glam::DVec3;
@@ -19,38 +19,38 @@ use crate::ui::theme::palette;
 use crate::ui::viewport::Place;
 use crate::words::counted;
 
-/// How far away something is that nothing is known of, in world units.
+/// Assumed distance where nothing is known of what is seen, in world units.
 const SOMEWHERE: f64 = 100.0;
 
-/// What the pointer drags.
+/// A drag in progress.
 pub enum Drag {
-    /// The camera around a point.
+    /// Orbits the camera around a point.
     Orbit(DVec3),
-    /// The camera past a point.
+    /// Pans the camera so that a point follows the pointer.
     Pan(DVec3),
-    /// A frame from here around what is to be selected, besides what is.
+    /// Draws a selection rectangle from this position; what it finds is added to this selection.
     Frame(Pos2, Selection),
-    /// What is selected.
+    /// Moves a handle of the selection.
     Grip(Box<Grip>),
-    /// What is here, once it is known, while shift was held.
+    /// Started at this position, with Shift or not, and waits to learn what is there.
     Undecided(Pos2, bool),
 }
 
-/// The picture, and what it is seen through.
+/// The picture, with what is needed to interact with it.
 pub struct Pane<'a> {
     /// The document.
     pub editor: &'a Editor,
-    /// Where the picture is.
+    /// Position and size of the picture.
     pub place: Place,
-    /// Between it and the scene.
+    /// The mapping between picture and scene.
     pub screen: Screen,
-    /// What is drawn over it.
+    /// Draws on top of the picture.
     pub painter: Painter,
 }
 
 impl Pane<'_> {
-    /// The point of the scene at a place of the picture; where nothing is, one as far away as the scene's
-    /// middle.
+    /// The point of the scene at a position in the picture; if nothing is there, a point at the depth of the
+    /// scene's middle.
     pub fn point_at(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
         let scene = self.editor.shown();
         let seen = seen_objects.at(self.editor, self.place.rect, at);
@@ -71,8 +71,8 @@ impl Pane<'_> {
         })
     }
 
-    /// What the camera is moved around: the middle of what is selected, if that is in the picture, or the
-    /// point at a place of it.
+    /// The point to orbit around: the middle of the selection, if it is finite and in the picture, otherwise the
+    /// point at a position.
     fn pivot(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
         let (selection, scene) = (self.editor.selection(), self.editor.shown());
         let mut selected = Movable::of(selection, scene).into_iter();
@@ -84,10 +84,10 @@ impl Pane<'_> {
         middle.unwrap_or_else(|| self.point_at(seen_objects, at))
     }
 
-    /// What is seen at a place, if it is a body that can be taken hold of.
+    /// The thing seen at a position, if it can be grabbed.
     fn body_at(&self, seen_objects: &SeenObjects, at: Pos2) -> Option<Thing> {
         let seen = seen_objects.at(self.editor, self.place.rect, at)?;
-        // What the eye is in surrounds it on all sides, as the sky does.
+        // A sphere around the camera surrounds it on all sides, as the sky does, and is no more grabbed than that.
         let eye = self.editor.shown().camera.position;
         let surrounds = match seen {
             Thing::Object(index) => match &self.editor.shown().objects.get(index)?.shape {
@@ -101,7 +101,7 @@ impl Pane<'_> {
 }
 
 impl Drag {
-    /// What a drag from a place of the picture is of, where this handle is.
+    /// Starts the drag that begins at a position in the picture, on `handle` if there is one.
     pub fn start(
         view: &Pane,
         seen_objects: &SeenObjects,
@@ -140,7 +140,7 @@ impl Drag {
         })
     }
 
-    /// The handle that is held.
+    /// The handle that is being dragged.
     pub fn handle(&self) -> Option<Handle> {
         match self {
             Self::Grip(grip) => Some(grip.handle()),
@@ -148,7 +148,7 @@ impl Drag {
         }
     }
 
-    /// Goes on by a frame. Whether it does: a button that is let go ends it, and Escape takes it back.
+    /// Continues the drag by a frame; returns whether it goes on. Releasing the button ends it, Escape cancels it.
     pub fn go_on(
         &mut self,
         ui: &Ui,
@@ -163,7 +163,7 @@ impl Drag {
             out.actions.push(Action::CancelGesture);
             return false;
         }
-        // Out of the window, it waits where it was.
+        // Nothing moves while the pointer is outside the window.
         let Some(at) = pointer else {
             return ui.input(|input| input.pointer.any_down());
         };
@@ -189,7 +189,7 @@ impl Drag {
             Self::Frame(from, before) => {
                 let part = Rect::from_two_pos(*from, at);
                 let found = seen_objects.within(view.editor, view.place.rect, part);
-                // Groups as with a click: others would be torn apart by what is done next.
+                // Whole groups, as with a click: the next step could otherwise tear them apart.
                 let found = before.picked(view.editor.scene(), &found);
                 let found = found.items();
                 if !response.dragged() {
@@ -231,7 +231,7 @@ fn show_frame(view: &Pane, part: Rect, (at, count): (Pos2, usize)) {
     label(&view.painter, at, &counted(count, "item"));
 }
 
-/// Takes digits up. Whether Enter was pressed.
+/// Appends typed digits; returns whether Enter was pressed.
 fn type_into(ui: &Ui, typed: &mut String) -> bool {
     let events = ui.input(|input| input.filtered_events(&egui::EventFilter::default()));
     let mut is_done = false;

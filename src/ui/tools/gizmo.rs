@@ -1,5 +1,5 @@
-//! Handles at what is selected: arrows and squares to move it, rings to turn it and to change its radius,
-//! a knob for the size of what has no radius, dots for corners.
+//! Handles of the selection: arrows and squares to move it, rings to rotate it and to change its radius, a knob to
+//! scale what has no radius, dots to move corners.
 
 use std::f64::consts::TAU;
 
@@ -12,50 +12,50 @@ use crate::editor::{Editor, Selection};
 use crate::scene::{Scene, Shape};
 use crate::ui::theme::{GRID, palette};
 
-/// Length of the arrows in points.
+/// Length of the arrows, in points.
 pub const LENGTH: f64 = 76.0;
-/// Where the arrows begin, and the squares between them, in lengths.
+/// Start of the arrows, and extent of the squares between them, in units of [`LENGTH`].
 const GAP: f64 = 0.16;
 const SQUARE: (f64, f64) = (0.3, 0.5);
-/// Radius of the rings that turn, in lengths.
+/// Radius of the rotation rings, in units of [`LENGTH`].
 pub const RING: f64 = 1.2;
-/// Where the knob for the size is, in lengths: its stem begins at the rings.
+/// The scaling knob's stem, in units of [`LENGTH`]: it starts at the rings.
 const KNOB: (f32, f32) = (RING as f32, 1.5);
-/// Half of the side of the knob, in points.
+/// Half the side of the knob, in points.
 const KNOB_REACH: f32 = 5.0;
-/// How near to a handle the pointer must be, in points.
+/// Maximum distance of the pointer from a handle that it grabs, in points.
 const REACH: f32 = 7.0;
-/// Length of the head of an arrow, in points.
+/// Length of an arrow head, in points.
 const HEAD: f32 = 9.0;
-/// Shortest arrow that is shown, in points: a shorter one points at the eye.
+/// Minimum length of an arrow that is shown, in points: shorter ones point towards the eye.
 const SHORTEST: f32 = 14.0;
-/// Corners of a drawn ring.
+/// Number of corners of a drawn ring.
 const CORNERS: usize = 72;
 /// The axes and their names.
 pub const AXES: [(DVec3, &str); 3] = [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")];
 
-/// What can be grabbed.
+/// A handle that can be grabbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// Moves along this axis.
     Along(usize),
-    /// Moves across this axis.
+    /// Moves in the plane perpendicular to this axis.
     Across(usize),
-    /// Moves in the plane of the camera, or on a level while shift is held.
+    /// Moves parallel to the picture, or horizontally while Shift is held.
     Free,
     /// Changes the radius.
     Radius,
-    /// Changes the size of what has no radius, or of several things, around the middle.
+    /// Scales an item without radius, or several items, about the middle.
     Size,
-    /// Moves a corner of a triangle in the plane of the camera.
+    /// Moves a corner of a triangle parallel to the picture.
     Corner(usize),
-    /// Turns what a plane or a disc faces.
+    /// Changes the normal of a plane or a disc.
     Normal,
-    /// Turns about this axis.
+    /// Rotates about this axis.
     Turn(usize),
 }
 
-/// A handle as it is drawn: a dot, a line between two points, or around a surface.
+/// A handle as it is drawn: a dot, a line between two points, or the outline of an area.
 struct Drawn {
     handle: Handle,
     line: Vec<Pos2>,
@@ -72,9 +72,9 @@ impl Drawn {
             .fold(f32::INFINITY, f32::min);
         match (self.handle, self.line.first()) {
             (Handle::Across(_), _) if is_inside(&self.line, at) => 0.0,
-            // Dots come before the lines that end in them.
+            // Dots take precedence over the lines that end in them.
             (Handle::Free | Handle::Corner(_), Some(dot)) => ((*dot - at).length() - 2.0).max(0.0),
-            // So do the heads of arrows, which lie over what runs through them.
+            // So do arrow heads, which are drawn over what passes through them.
             (Handle::Along(_) | Handle::Size, _) => {
                 let head = self
                     .line
@@ -87,7 +87,7 @@ impl Drawn {
     }
 }
 
-/// From each point to the next one, and from the last to the first.
+/// The segments of a closed polygon.
 fn sides(line: &[Pos2]) -> impl Iterator<Item = (Pos2, Pos2)> {
     let next = line.iter().cycle().skip(1);
     line.iter().zip(next).map(|(from, to)| (*from, *to))
@@ -103,7 +103,7 @@ fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
     (1..corners.len()).all(|n| side(n) == first)
 }
 
-/// A circle on the screen around an axis of length 1.
+/// A circle around an axis of unit length, on the screen.
 fn ring(screen: &Screen, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
     let (u, v) = axis.any_orthonormal_pair();
     let at = |n: usize| {
@@ -114,7 +114,7 @@ fn ring(screen: &Screen, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
     all.unwrap_or_default()
 }
 
-/// The rim of a ball as it is seen.
+/// The visible contour of a sphere.
 fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
     let Some(at) = screen.place(center) else {
         return Vec::new();
@@ -122,7 +122,7 @@ fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
     let (origin, axis) = screen.ray(at);
     let arm = center - origin;
     let distance = arm.length();
-    // In parallel projection rays start anywhere along the axis: the rim is that around the middle.
+    // Parallel rays may start anywhere along the axis; the contour is the circle around the centre.
     let is_parallel =
         axis.dot(screen.forward()) > 1.0 - 1e-12 && screen.ray(screen.view.min).1 == axis;
     if is_parallel {
@@ -136,12 +136,12 @@ fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
     ring(screen, center - axis * nearer, axis, seen)
 }
 
-/// Everything that can be grabbed at what is selected.
+/// All handles of the selection.
 fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     let Some(middle) = selected.pivot(scene) else {
         return Vec::new();
     };
-    // Of many, nothing is copied: this is done in every frame.
+    // With many items selected, none is cloned, as this runs in every frame.
     let only = selected
         .only_placed()
         .and_then(|item| Movable::new(scene, item));
@@ -203,17 +203,18 @@ fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     drawn
 }
 
-/// Whether a single thing has a size that is no radius.
+/// Returns whether a single item can be scaled and has no radius.
 fn has_size(subject: &Movable) -> bool {
     matches!(subject.shape(), Some(Shape::Mesh(_) | Shape::Triangle(_)))
 }
 
-/// Whether there is something to turn about the middle of a single thing; several are turned around each other.
+/// Returns whether a single item can be rotated about its middle; several items can always be rotated about a
+/// common one.
 fn is_mesh(subject: &Movable) -> bool {
     matches!(subject.shape(), Some(Shape::Mesh(_)))
 }
 
-/// The handles that only this kind of thing has.
+/// Adds the handles that only this kind of item has.
 fn own_handles(
     screen: &Screen,
     subject: &Movable,
@@ -261,7 +262,7 @@ pub fn handle_at(screen: &Screen, selected: &Selection, scene: &Scene, at: Pos2)
         .map(|(_, handle)| handle)
 }
 
-/// Draws the handles; the one that is meant is bright.
+/// Draws the handles, with the hovered or dragged one highlighted.
 pub fn show(painter: &Painter, screen: &Screen, editor: &Editor, meant: Option<Handle>) {
     let colors = palette(painter.ctx());
     let (selected, scene) = (editor.selection(), editor.shown());
@@ -303,7 +304,7 @@ fn draw(painter: &Painter, (handle, line): (Handle, &[Pos2]), stroke: Stroke) {
             painter.rect(knob, 1, stroke.color, edge, StrokeKind::Outside);
         }
         (_, points) => {
-            // Thin lines one by one: corners of a line that turns back would be spikes.
+            // Separate segments, as the joins of a polyline that turns back on itself would form spikes.
             for stroke in [halo, stroke] {
                 for (from, to) in sides(points) {
                     painter.line_segment([from, to], stroke);
@@ -324,14 +325,14 @@ fn arrow_head(painter: &Painter, from: Pos2, to: Pos2, color: Color32, halo: Col
     ));
 }
 
-/// Words beside the pointer.
+/// Draws a text box beside the pointer.
 pub fn label(painter: &Painter, at: Pos2, words: &str) {
     let colors = palette(painter.ctx());
     let font: FontId = TextStyle::Monospace.resolve(&painter.ctx().global_style());
     let text = painter.layout_no_wrap(words.to_owned(), font, colors.text);
     let corner = at + vec2(2.0 * GRID, 2.0 * GRID);
     let rect = egui::Rect::from_min_size(corner, text.size()).expand2(vec2(6.0, 3.0));
-    // Within the picture.
+    // Kept within the picture.
     let off = (painter.clip_rect().max - rect.max).min(egui::Vec2::ZERO);
     let rect = rect.translate(off);
     painter.rect(

@@ -1,4 +1,4 @@
-//! A handle that is held: what pulling it comes to.
+//! A handle that is being dragged, and the edits that result.
 
 use std::cell::Cell;
 
@@ -12,40 +12,40 @@ use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
 use crate::ui::number::read_number;
 
-/// Degrees to which turns snap.
+/// Angle to which rotations snap, in degrees.
 const DEGREES: f64 = 15.0;
-/// What moves no more along an axis than this share of its way does not move along it.
+/// Movement along an axis below this fraction of the whole movement counts as none.
 const STILL: f64 = 1e-9;
 
-/// A handle that was grabbed.
+/// A handle that is being dragged.
 #[derive(Clone, Debug)]
 pub struct Grip {
     handle: Handle,
-    /// Everything as it was.
+    /// The items as they were at the start.
     before: Vec<Movable>,
-    /// What it is turned about.
+    /// The centre of rotation and scaling.
     middle: DVec3,
     /// Where it was grabbed: on the screen, and in the scene.
     from: (Pos2, DVec3),
-    /// What is typed in place of being pointed at.
+    /// A number typed instead of moving the pointer.
     pub typed: String,
-    /// By how many degrees it was turned last, rounds included.
+    /// Last rotation in degrees, counting full turns.
     turned: Cell<f64>,
 }
 
-/// How the pointer is meant.
+/// The pointer's input to a drag.
 #[derive(Clone, Copy, Debug)]
 pub struct Pull {
-    /// Where it is.
+    /// Position on the screen.
     pub at: Pos2,
-    /// Whether values are to be round.
+    /// Whether values snap to round ones.
     pub snaps: bool,
-    /// Whether a free move stays on its level.
+    /// Whether a free move stays horizontal.
     pub is_level: bool,
 }
 
 impl Grip {
-    /// Grabs a handle of these things, which are turned about this point, at a place on the screen.
+    /// Grabs a handle of these items, with this centre of rotation, at a screen position.
     pub fn new(
         screen: &Screen,
         (before, middle): (Vec<Movable>, DVec3),
@@ -64,7 +64,7 @@ impl Grip {
         Some(grip)
     }
 
-    /// Takes hold of these things, which are turned about this point, where one of them was pointed at.
+    /// Grabs the items themselves, with this centre of rotation, at a point of one of them.
     pub fn body((before, middle): (Vec<Movable>, DVec3), at: Pos2, point: DVec3) -> Self {
         Self {
             handle: Handle::Free,
@@ -76,7 +76,7 @@ impl Grip {
         }
     }
 
-    /// Whether a number can be typed in place of a pull.
+    /// Returns whether a number can be typed instead.
     pub fn takes_numbers(&self) -> bool {
         matches!(
             self.handle,
@@ -84,7 +84,7 @@ impl Grip {
         )
     }
 
-    /// What is wrong with what is typed.
+    /// Describes what is wrong with the typed text, if anything.
     pub fn wrong(&self) -> Option<String> {
         let is_size = matches!(self.handle, Handle::Radius | Handle::Size);
         match read_number(&self.typed) {
@@ -96,12 +96,12 @@ impl Grip {
         }
     }
 
-    /// What is held.
+    /// The handle that is being dragged.
     pub fn handle(&self) -> Handle {
         self.handle
     }
 
-    /// The point that a place on the screen means to the handle.
+    /// The point in the scene that a screen position means for this handle.
     fn pointed_at(&self, screen: &Screen, at: Pos2) -> Option<DVec3> {
         let held = self.from.1;
         match self.handle {
@@ -118,7 +118,8 @@ impl Grip {
         }
     }
 
-    /// What becomes round: the position as it is written, of one thing.
+    /// The point whose coordinates are rounded: that of a single item as it is stored in the file, otherwise the
+    /// centre.
     fn place(&self) -> DVec3 {
         match &self.before[..] {
             [only] => only.position(),
@@ -133,7 +134,8 @@ impl Grip {
         }
     }
 
-    /// What a pull comes to: the change, and by how much in words. `None` where the pointer has no meaning.
+    /// Returns the edit for a pointer position, and a description of the amount. `None` where the position has no
+    /// meaning.
     pub fn pull(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
         let unit = screen.unit_at(self.middle);
         let round = |value: f64| rounded(value, unit, pull.snaps);
@@ -162,7 +164,7 @@ impl Grip {
                 };
                 let start = self.place();
                 let part = |axis: usize| {
-                    // Seen along an axis, it is dragged across that: nothing is rounded along it.
+                    // An axis that points towards the viewer is not moved along: its coordinate is not rounded.
                     if fixed(axis) || by[axis].abs() <= STILL * by.length() {
                         start[axis]
                     } else {
@@ -212,7 +214,7 @@ impl Grip {
         }
     }
 
-    /// Moves everything with [`Self::place`].
+    /// Moves all items so that [`Self::place`] is at `place`.
     fn move_to(&self, place: DVec3) -> Option<Edit> {
         let edits = match &self.before[..] {
             [only] => vec![only.placed(place)],
@@ -232,7 +234,7 @@ impl Grip {
         together(edits.collect(), "Resize")
     }
 
-    /// How many times as far from the middle a place on the screen is as where it was grabbed.
+    /// Ratio of the distances from the middle: of the current screen position to that of the grab.
     fn times(&self, screen: &Screen, pull: Pull) -> Option<f64> {
         let middle = screen.place(self.middle)?;
         let times = (pull.at - middle).length() / (self.from.0 - middle).length().max(1.0);
@@ -240,7 +242,7 @@ impl Grip {
         Some((f64::from(times) * parts).round().max(1.0) / parts)
     }
 
-    /// How far the ray through a place passes from the middle; on a disc, where it meets it.
+    /// Distance of the ray through a screen position from the middle; for a disc, distance of the intersection.
     fn radius(&self, screen: &Screen, at: Pos2) -> Option<f64> {
         if let Some(Shape::Disc(disc)) = self.before.first()?.shape() {
             let to = screen.on_plane(at, disc.center, disc.normal)?;
@@ -258,7 +260,7 @@ impl Grip {
             .dot(from.cross(to))
             .atan2(from.dot(to))
             .to_degrees();
-        // Pulled around more than half of it, it goes on.
+        // Past half a turn, the angle continues instead of jumping back.
         let rounds = ((self.turned.get() - degrees) / 360.0).round();
         let degrees = degrees + rounds * 360.0;
         self.turned.set(degrees);
@@ -266,7 +268,7 @@ impl Grip {
         Some((degrees / step).round() * step)
     }
 
-    /// The normal points to where the pointer is on a ball around where it starts.
+    /// Turns the normal towards the pointer's position on a sphere around its base.
     fn face(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
         let subject = self.before.first()?;
         let mut shape = subject.shape()?.clone();
@@ -285,7 +287,7 @@ impl Grip {
         let along = arm.dot(direction);
         let off = (arm - direction * along).length();
         let depth = (length * length - off * off).max(0.0).sqrt();
-        // On the side of the ball where it is already.
+        // On the same side of the sphere as before.
         let depth = if normal.dot(direction) > 0.0 {
             depth
         } else {
@@ -299,7 +301,7 @@ impl Grip {
         Some((Some(subject.reshaped(shape, "normal")), words))
     }
 
-    /// Writes what changes beside the pointer.
+    /// Writes the change beside the pointer.
     pub fn label(&self, painter: &Painter, at: Pos2, words: &str) {
         let words = if self.typed.is_empty() {
             words.to_owned()
@@ -311,7 +313,7 @@ impl Grip {
     }
 }
 
-/// A value where a point of the screen is `unit` wide: no finer than that, or a round one.
+/// Rounds a value to the resolution of the screen, where a point is `unit` wide, or to a rounder step if it snaps.
 fn rounded(value: f64, unit: f64, snaps: bool) -> f64 {
     let step = 10_f64.powf(if snaps {
         (unit * 8.0).log10().ceil()
@@ -321,7 +323,7 @@ fn rounded(value: f64, unit: f64, snaps: bool) -> f64 {
     if !step.is_finite() || step == 0.0 {
         return value;
     }
-    // Divided by a whole number, tenths are the nearest numbers to tenths.
+    // Dividing by an integer yields the floats nearest to decimal fractions.
     if step < 1.0 {
         let parts = (1.0 / step).round();
         (value * parts).round() / parts
@@ -379,7 +381,7 @@ mod tests {
         let both = Selection::all([Item::object(0), Item::object(1)]);
         let centre = both.middle(&scene).expect("a middle");
         let (both, middle) = (Movable::of(&both, &scene), screen.place(centre));
-        // It circles as a clock does, seen from where the axis comes from.
+        // Clockwise on the screen, seen from the tip of the axis.
         let at = |degrees: f32| {
             let angle = -degrees.to_radians();
             middle.expect("in front") + vec2(angle.cos(), angle.sin()) * 100.0
@@ -393,7 +395,7 @@ mod tests {
             };
             grip.pull(&screen, pull).expect("a turn").1
         };
-        // In steps, as a hand does, forth and far back.
+        // In steps, as a hand does, forwards and far back.
         for degrees in (0..600).chain((-600..=600).rev()).step_by(60) {
             let sign = if degrees < 0 { "" } else { "+" };
             assert_eq!(pulled(degrees as f32), format!("z {sign}{degrees}°"));

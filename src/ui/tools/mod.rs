@@ -1,4 +1,4 @@
-//! Hands in the picture: a click selects, a drag moves what is grabbed, or the camera around it.
+//! Mouse tools in the picture: a click selects; a drag moves what is grabbed, or the camera.
 
 mod screen;
 
@@ -37,54 +37,55 @@ use crate::image::{ObjectMap, Thing};
 use crate::scene::{Camera, Framing, Projection, around};
 use crate::words::shortened;
 
-/// Seconds that the pointer rests before it is told what it is over.
+/// Seconds that the pointer has to rest before the name of what it hovers is shown.
 const PATIENCE: f32 = 0.3;
-/// Most letters of a name beside the pointer.
+/// Maximum number of letters of a name beside the pointer.
 const LONGEST: usize = 32;
-/// Least size of what is framed, as a share of everything.
+/// Minimum size of what is framed, as a fraction of the whole scene.
 const LEAST_FRAMED: f64 = 0.02;
-/// Seconds within which the second of two clicks comes at last.
+/// Maximum time between the two clicks of a double click, in seconds.
 const TWICE: f64 = 1.0;
-/// How far apart two clicks on one place may be, in points.
+/// Maximum distance between two clicks that count as being at the same place, in points.
 const SAME_PLACE: f32 = 4.0;
 
-/// What the tools remember between frames.
+/// The state of the tools between frames.
 #[derive(Default)]
 pub struct Tools {
     seen_objects: SeenObjects,
     drag: Option<Drag>,
-    /// Where the wheel turns, and the point of the scene that is there.
+    /// The position of the pointer while the wheel is turned, and the point of the scene there.
     wheel: Option<(Pos2, DVec3)>,
-    /// A click that waits to know what is there, and the picture of which revision was clicked.
+    /// A click that waits to learn what is there: its position, its modifiers, and the revision of the picture.
     click: Option<(Pos2, Modifiers, u64)>,
-    /// When the picture was clicked last, and not for the second time.
+    /// Time of the last click in the picture that was not the second of a double click.
     clicked_at: f64,
-    /// Where what is behind something was asked for, in the picture of which revision, and what is before it.
+    /// For selecting what is behind other things: the position, the revision of the picture, and the things found
+    /// there so far, front to back.
     behind: Option<(Pos2, u64, Vec<Thing>)>,
-    /// The document that all this is about.
+    /// The document that this state belongs to.
     document: u64,
-    /// Where the menu was opened.
+    /// The position at which the context menu was opened.
     menu_at: Option<Pos2>,
-    /// Whether what is there is not known yet.
+    /// Whether it is still unknown what is at that position.
     menu_waits: bool,
-    /// Where the picture was.
+    /// Rectangle of the picture in the last frame.
     view: Option<Rect>,
 }
 
 impl Tools {
-    /// Whether keys are meant for what is dragged.
+    /// Returns whether keys are meant for a drag.
     pub fn is_dragging(&self) -> bool {
         self.drag.is_some()
     }
 
-    /// Lets go of everything: the picture is another one, or none that can be taken hold of.
+    /// Drops all gestures in progress: the picture has been replaced, or there is none to interact with.
     pub fn rest(&mut self) {
         (self.drag, self.click, self.behind, self.wheel) = (None, None, None, None);
         self.menu_waits = false;
     }
 
-    /// Takes up what is seen in the picture of a revision, as if nothing of `without` were there. What is to
-    /// be selected, if that was asked for.
+    /// Takes over the map of what is seen in the picture of a revision, with the things in `without` left out.
+    /// Returns the new selection, if the map was requested to select what is behind them.
     pub fn take(
         &mut self,
         editor: &Editor,
@@ -100,18 +101,18 @@ impl Tools {
         if before != without || *of != revision {
             return None;
         }
-        // Behind the last is the first again.
+        // After the last thing, start again with the first.
         match map.at(column, row) {
             Some(next) => before.push(next),
             None => before.truncate(1),
         }
         let item = item_of(*before.last()?);
-        // Whatever was taken hold of on the way there.
+        // Independent of what was selected on the way there.
         Some(Selection::default().picked(editor.scene(), &[item]))
     }
 
-    /// The tools over the picture at `place`, which `response` is of; `wheel` is how far the wheel was turned
-    /// over it, and `is_busy` whether a gesture goes on elsewhere.
+    /// Handles the tools for the picture at `place`, whose response is `response`; `wheel` is the wheel movement
+    /// over it, and `is_busy` says whether a gesture is in progress elsewhere.
     pub fn show(
         &mut self,
         ui: &Ui,
@@ -134,7 +135,7 @@ impl Tools {
             screen,
             painter: ui.painter().with_clip_rect(place.rect),
         };
-        // What plays would set a key in every frame.
+        // During playback and through the shot camera, a drag would set a key in every frame.
         let has_gizmo = !(editor.looks_through() || editor.timeline().is_playing);
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
         let meant = hovered
@@ -147,13 +148,13 @@ impl Tools {
             }
         };
         if let Some(drag) = &mut self.drag {
-            // Below the value that is written beside the pointer.
+            // Drawn before the value beside the pointer, which covers it.
             show_gizmo(drag.handle());
             if !drag.go_on(ui, &view, &self.seen_objects, response, out) {
                 self.drag = None;
             }
         } else {
-            // Below the name that is written beside the pointer.
+            // Drawn before the name beside the pointer, which covers it.
             show_gizmo(meant);
             self.hover(ui, &view, hovered, meant);
         }
@@ -172,7 +173,8 @@ impl Tools {
         let modifiers = ui.input(|input| input.modifiers);
         let now = ui.input(|input| input.time);
         let is_second = response.double_clicked() && modifiers.is_none();
-        // The first click of two may have been on something before the picture, which is gone; or it waits still.
+        // The first of two clicks may have hit something in front of the picture that is gone by now, or may still
+        // be pending.
         let is_first_done = now - self.clicked_at < TWICE && self.click.is_none();
         if response.clicked() && (!is_second || is_first_done) {
             let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
@@ -183,7 +185,7 @@ impl Tools {
         self.take_pack(ui, &view, response, out);
     }
 
-    /// Takes a pack that is dropped on what shall wear it.
+    /// Assigns a color pack dropped on the picture to the item at that position.
     fn take_pack(&mut self, ui: &Ui, view: &Pane, response: &Response, out: &mut UiRequests) {
         let dragged = response.dnd_hover_payload::<Item>();
         let is_over = dragged.is_some_and(|item| item.kind == ItemKind::Pack);
@@ -204,7 +206,7 @@ impl Tools {
         }
     }
 
-    /// The menu of the right button: what is there is selected, and what can be done to it is listed.
+    /// Shows the context menu: selects the item at the pointer, and lists the commands for it.
     fn show_menu(&mut self, ui: &Ui, view: &Pane, response: &Response, out: &mut UiRequests) {
         if response.secondary_clicked() {
             self.menu_at = ui.input(|input| input.pointer.interact_pos());
@@ -229,7 +231,7 @@ impl Tools {
                 out.commands.push(Command::Why(origin, direction));
             }
             ui.separator();
-            // What is selected may be something else.
+            // The current selection may be another item.
             if self.menu_waits {
                 ui.weak("Looking what is here");
             } else {
@@ -246,7 +248,7 @@ impl Tools {
                 entry(ui, text, command, out);
             }
         });
-        // Of a menu that is closed, nobody waits for what it is about.
+        // Once the menu is closed, its item no longer matters.
         self.menu_waits &= menu.is_some();
     }
 
@@ -283,7 +285,7 @@ impl Tools {
     fn hover(&mut self, ui: &Ui, view: &Pane, at: Option<Pos2>, meant: Option<Handle>) {
         let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of).filter(|_| meant.is_none());
-        // A line around the floor would be one around everything that stands on it.
+        // An outline of the floor would surround everything that stands on it.
         let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
         let outlined = outlined.map(item_of).filter(|_| meant.is_none());
         let (scene, selected) = (view.editor.scene(), view.editor.selection());
@@ -327,9 +329,9 @@ impl Tools {
         out.edit(Edit::Camera(camera, "move"));
     }
 
-    /// Selects what was clicked, once it is known.
+    /// Selects the clicked item, once it is known.
     fn select(&mut self, view: &Pane, out: &mut UiRequests) {
-        // What was clicked in a picture that is gone, nobody means any more.
+        // A click in a picture that has since been replaced is dropped.
         let revision = view.editor.shown_revision();
         self.click = self
             .click
@@ -372,14 +374,14 @@ impl Tools {
     }
 }
 
-/// The camera with everything in its picture, or everything that is selected.
+/// The camera that fits everything into the picture, or everything that is selected.
 pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let scene = editor.shown();
     let selected = Movable::of(editor.selection(), scene);
     let bounds = around(selected.iter().filter_map(Movable::bounds));
     let all = scene.surroundings();
     let (low, high) = bounds.filter(|_| only_selected).or(all)?;
-    // A light without a marker is a point: some of what is around it is to be seen.
+    // A light without a marker is a point: show some of its surroundings.
     let size = all.map_or(0.0, |(low, high)| (high - low).length());
     let least = match (low != high, size > 0.0) {
         (true, _) => 0.0,
@@ -392,8 +394,8 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
 }
 
-/// Whether nothing of what is selected can be in the picture: the ball around each thing is beside it, or behind the
-/// camera.
+/// Returns whether the whole selection is certainly out of view: the bounding sphere of each item is beside the
+/// picture or behind the camera.
 pub fn is_selected_unseen(editor: &Editor) -> bool {
     let scene = editor.shown();
     let selected = Movable::of(editor.selection(), scene);
@@ -410,8 +412,8 @@ pub fn is_selected_unseen(editor: &Editor) -> bool {
     !selected.is_empty() && bounds.all(|bounds| bounds.is_some_and(is_out))
 }
 
-/// The planes around what a picture shows: through the sides of the picture, and through its middle; each by a point on
-/// it and the unit normal that points to what is shown.
+/// The planes that bound the visible volume, through the four sides of the picture and through the camera; each as
+/// a point on it and the unit normal that points inwards.
 fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
     let (x, y) = (aspect / 2.0, 0.5);
     let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|place| framing.ray(place));
@@ -425,12 +427,12 @@ fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
     [side(0), side(1), side(2), side(3), (middle, forward)]
 }
 
-/// The camera that looks along a direction at what is selected, or at everything.
+/// The camera that looks along a direction at the selection, or at everything.
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
     along(&editor.shown().camera, editor.middle(), direction)
 }
 
-/// The camera with another projection, in which the middle of the scene is about as large as before.
+/// The camera with another projection, in which the middle of the scene appears about as large as before.
 pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
     let scene = editor.shown();
     projected(&scene.camera, scene.middle(), projection)

@@ -1,4 +1,4 @@
-//! Moving the camera around what is looked at.
+//! Moving the camera relative to what is looked at.
 
 use egui::Vec2;
 use glam::DVec3;
@@ -8,17 +8,17 @@ use crate::scene::{Camera, Projection};
 
 /// Radians per point of mouse movement.
 const ORBIT: f64 = 0.008;
-/// How much nearer a point of wheel movement comes.
+/// Relative change of the distance per point of wheel movement.
 const DOLLY: f64 = 0.003;
-/// How many times as large or small as before another projection may show something.
+/// Factor by which a change of projection may change the apparent size.
 const MUCH: f64 = 3.0;
 
-/// The turn of an orbit, to the right and upwards, of a movement of the mouse: what is circled follows it.
+/// Rotation of an orbit, to the right and upwards, for a mouse movement: things follow the pointer.
 pub fn turn(moved: Vec2) -> (f64, f64) {
     (-f64::from(moved.x) * ORBIT, -f64::from(moved.y) * ORBIT)
 }
 
-/// The camera after a movement of the mouse that a point is to follow.
+/// Moves the camera so that a point follows a mouse movement.
 pub fn panned(camera: &Camera, screen: &Screen, point: DVec3, moved: Vec2) -> Camera {
     let mut next = camera.clone();
     if let Some(basis) = camera.basis() {
@@ -29,7 +29,7 @@ pub fn panned(camera: &Camera, screen: &Screen, point: DVec3, moved: Vec2) -> Ca
     next
 }
 
-/// The camera after a turn of the wheel towards a point, which stays where it is in the picture.
+/// Moves the camera towards a point by a wheel movement; the point keeps its position in the picture.
 pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
     let factor = (-wheel * DOLLY).exp();
     let mut next = camera.clone();
@@ -38,7 +38,7 @@ pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
         Projection::Orthographic => {
             let forward = camera.look_at.normalize_or_zero();
             let arm = point - camera.position;
-            // The window shrinks around the point; how far it is away does not matter.
+            // The view window shrinks around the point; its distance does not matter.
             next.position += (arm - forward * arm.dot(forward)) * (1.0 - factor);
             next.orthographic_height *= factor;
         }
@@ -46,7 +46,7 @@ pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
     next
 }
 
-/// The camera that looks along a direction at the same middle from the same distance.
+/// The camera that looks at the same middle from the same distance, but along another direction.
 pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     let distance = (about - camera.position).length();
     let is_steep = direction.y.abs() > 0.5;
@@ -58,8 +58,8 @@ pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     }
 }
 
-/// The camera with another projection. Where that would show what is as far away as a point much larger or smaller than
-/// before, it is as large as before; a little is what somebody has chosen.
+/// The camera with another projection. If things at the depth of `about` would change their size by `MUCH` or
+/// more, they keep their size instead; smaller differences stay, as the user chose the parameters that cause them.
 pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) -> Camera {
     let mut next = Camera {
         projection,
@@ -107,7 +107,7 @@ mod tests {
             };
             let forward = camera.look_at.normalize();
             let at = |depth: f64| camera.position + forward * depth + camera.up * 7.0;
-            // As large in both.
+            // At this depth, both projections show the same size.
             let usual = camera.orthographic_height * camera.projection_distance;
             for depth in [0.5 * usual, 2.0 * usual, -1.0] {
                 let seen = projected(&camera, Some(at(depth)), other);

@@ -1,4 +1,4 @@
-//! Lines around what is selected, and around what the pointer is over.
+//! Outlines around the selection and around what is hovered.
 
 use std::ops::Range;
 
@@ -6,31 +6,31 @@ use egui::{Color32, ColorImage};
 
 use crate::image::{ObjectMap, Thing};
 
-/// Pixels that a line is wide.
+/// Width of an outline, in pixels.
 const LINE: usize = 2;
-/// Pixels of the dark edge around it, which makes it seen on any picture.
+/// Width of the dark edge around the outline, in pixels, which keeps it visible on any picture.
 const HALO: usize = 1;
 
-/// A part of the picture with lines in it.
+/// The part of the picture that contains an outline.
 #[derive(Debug)]
 pub struct OutlineImage {
-    /// The first column and row of pixels.
+    /// Column and row of its first pixel.
     pub corner: [usize; 2],
-    /// The lines, transparent elsewhere.
+    /// The outline, transparent elsewhere.
     pub image: ColorImage,
 }
 
-/// What a pixel shows; the sky has no end.
+/// What a pixel shows; the default is the sky, which is infinite.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PixelObject {
-    /// Whether it is wanted.
+    /// Whether it belongs to the outlined things.
     pub is_wanted: bool,
-    /// Whether it has an end: before what has none, everything else stands in front.
+    /// Whether it is finite. Infinite things count as being behind all finite ones.
     pub ends: bool,
 }
 
-/// The lines of a colour, and their edges, around everything that is wanted; `None` if nothing of it is seen. Around
-/// what has no end they do not run where something that has one stands before it.
+/// Draws an outline and its edge around everything that is wanted; `None` if nothing of it is visible. The outline
+/// of an infinite thing is interrupted where something finite is in front of it.
 pub fn outline(
     map: &ObjectMap,
     (color, halo): (Color32, Color32),
@@ -74,14 +74,14 @@ pub fn outline(
     })
 }
 
-/// What is seen at each pixel, and the columns and rows of those that show something wanted.
+/// Returns what each pixel shows, and the columns and rows that contain wanted pixels.
 fn silhouette(
     map: &ObjectMap,
     seen: impl Fn(Thing) -> PixelObject,
 ) -> Option<(Vec<PixelObject>, Range<usize>, Range<usize>)> {
     let mut inside = Vec::with_capacity(map.width() * map.height());
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-    // Neighbours are mostly alike.
+    // Neighbouring pixels mostly show the same thing.
     let mut last = (None, PixelObject::default());
     for row in 0..map.height() {
         for (column, thing) in map.row(row).enumerate() {
@@ -98,7 +98,7 @@ fn silhouette(
     (high[0] > 0).then(|| (inside, low[0]..high[0], low[1]..high[1]))
 }
 
-/// Whether a pixel shows something wanted, and a neighbour of it something else that is not in front of that.
+/// Returns whether a pixel is wanted and has a neighbour that is neither wanted nor in front of it.
 fn is_border(inside: &[PixelObject], width: usize, column: usize, row: usize) -> bool {
     let at = row * width + column;
     let own = inside[at];
@@ -115,7 +115,7 @@ fn is_border(inside: &[PixelObject], width: usize, column: usize, row: usize) ->
             || (column + 1 < width && is_end(&inside[at + 1])))
 }
 
-/// Notes the squares of the distances from a pixel, where those are free.
+/// Lowers the squared distances around a border pixel where they are greater, in the pixels that are free.
 fn spread(
     distances: &mut [usize],
     size: [usize; 2],
@@ -183,7 +183,7 @@ mod tests {
         }
         assert!(lines > 100, "{lines}");
         assert!(outline(&map, colors, seen(Thing::Object(99))).is_none());
-        // Around the floor they run along the horizon, and not around what stands on it.
+        // The outline of the floor runs along the horizon, and not around what stands on it.
         let found = outline(&map, colors, seen(floor)).expect("it is seen");
         let [left, top] = found.corner;
         let size = found.image.size[0];
@@ -193,7 +193,7 @@ mod tests {
             if *pixel == Color32::WHITE {
                 let mut around = (row.saturating_sub(3)..=row + 3)
                     .flat_map(|y| (column.saturating_sub(3)..=column + 3).map(move |x| (x, y)));
-                // Nothing stands where it is drawn.
+                // The outline covers nothing that stands there.
                 assert!([None, Some(floor)].contains(&map.at(column, row)));
                 assert!(
                     around.any(|(x, y)| map.at(x, y).is_none()),

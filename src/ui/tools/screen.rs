@@ -1,21 +1,21 @@
-//! Between the scene and the picture on screen.
+//! Mapping between the scene and the picture on screen.
 
 use egui::{Pos2, Rect, vec2};
 use glam::DVec3;
 
 use crate::scene::{Camera, Framing, Projection, Shape};
 
-/// From the scene to the screen and back.
+/// Maps points of the scene to the screen, and screen positions to rays.
 #[derive(Clone, Debug)]
 pub struct Screen {
     framing: Framing,
     camera: Camera,
-    /// Where the picture is.
+    /// Rectangle of the picture.
     pub view: Rect,
 }
 
 impl Screen {
-    /// Of a camera whose picture is at `view`; `None` if it has no basis.
+    /// Creates the mapping of a camera whose picture is at `view`; `None` if the camera has no valid basis.
     pub fn new(camera: &Camera, view: Rect) -> Option<Self> {
         Some(Self {
             framing: camera.framing()?,
@@ -24,25 +24,25 @@ impl Screen {
         })
     }
 
-    /// Where a point is on the screen; `None` behind the camera.
+    /// Position of a point on the screen; `None` if it is behind the camera.
     pub fn place(&self, point: DVec3) -> Option<Pos2> {
         let [x, y] = self.framing.project(point)?;
         let height = self.view.height();
         Some(self.view.center() + vec2(x as f32 * height, -y as f32 * height))
     }
 
-    /// Origin and unit direction of the ray through a place on the screen.
+    /// Origin and unit direction of the ray through a screen position.
     pub fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
         let off = (at - self.view.center()) / self.view.height();
         self.framing.ray([f64::from(off.x), f64::from(-off.y)])
     }
 
-    /// The direction in which the camera looks.
+    /// The viewing direction of the camera.
     pub fn forward(&self) -> DVec3 {
         self.ray(self.view.center()).1
     }
 
-    /// How many world units a point of the screen is wide where something is.
+    /// World units per screen point at the depth of `point`.
     pub fn unit_at(&self, point: DVec3) -> f64 {
         let height = match self.camera.projection {
             Projection::Perspective => {
@@ -54,15 +54,16 @@ impl Screen {
         height / f64::from(self.view.height())
     }
 
-    /// Where the ray through a place on the screen meets the plane through a point; `None` if it runs
-    /// along it, or the plane is behind.
+    /// Intersection of the ray through a screen position with the plane through a point; `None` if the ray is
+    /// parallel to the plane, or the plane is behind the camera.
     pub fn on_plane(&self, at: Pos2, point: DVec3, normal: DVec3) -> Option<DVec3> {
         let (origin, direction) = self.ray(at);
         let t = (point - origin).dot(normal) / direction.dot(normal);
         (t.is_finite() && t > 0.0).then(|| origin + direction * t)
     }
 
-    /// As far along the line through a point as the place on the screen is, in units of its direction.
+    /// Parameter, in units of `direction`, of the point on the line through `point` that is nearest to a screen
+    /// position; `None` if the line is seen end-on.
     pub fn along(&self, at: Pos2, point: DVec3, direction: DVec3) -> Option<f64> {
         let (origin, ray) = self.ray(at);
         // The point of the line that is closest to the ray.
@@ -72,8 +73,8 @@ impl Screen {
         (size > 1e-9 * direction.length_squared()).then_some(t)
     }
 
-    /// Where the ray through a place on the screen meets a shape that is seen there; meshes as far away as
-    /// their middle.
+    /// Intersection of the ray through a screen position with a shape that is seen there; for meshes, the depth of
+    /// their middle is assumed.
     pub fn on_shape(&self, at: Pos2, shape: &Shape) -> Option<DVec3> {
         match shape {
             Shape::Sphere(ball) => {

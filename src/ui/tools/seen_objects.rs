@@ -1,5 +1,4 @@
-//! What is seen where: the map of the picture's objects, asked for when nothing moves, and the lines drawn
-//! after it.
+//! The map of which object is seen at each pixel, requested when nothing moves, and the outlines drawn from it.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -15,26 +14,26 @@ use crate::ui::upload::paint;
 use crate::ui::viewport::Place;
 use crate::worker::Question;
 
-/// What is seen in the newest picture that was looked at.
+/// The objects seen in the last picture that was examined.
 #[derive(Default)]
 pub struct SeenObjects {
     map: Option<(u64, ObjectMap)>,
-    /// Revision and size of the picture that was asked about.
+    /// Revision and size of the picture that was last asked about.
     asked: Option<(u64, (u32, u32))>,
-    /// The lines of what is selected, and of what the pointer is over.
+    /// The outlines of the selection, and of what is hovered.
     lines: [OutlineTextures; 2],
 }
 
-/// Lines on the graphics card.
+/// An outline as a texture.
 #[derive(Default)]
 struct OutlineTextures {
-    /// The revision of the map, the colour, and what is surrounded.
+    /// Revision of the map, colour, and outlined items that the texture was made for.
     made_for: Option<(u64, Color32, Vec<Item>)>,
-    /// Where they are, in pixels of the picture.
+    /// The texture, and its rectangle in pixels of the map.
     shown: Option<(Rect, TextureHandle)>,
 }
 
-/// The entry of the scene's lists that a thing is.
+/// The item of a thing in the picture.
 pub fn item_of(thing: Thing) -> Item {
     match thing {
         Thing::Light(index) => Item::light(index),
@@ -43,7 +42,7 @@ pub fn item_of(thing: Thing) -> Item {
 }
 
 impl SeenObjects {
-    /// The question what is seen in the picture at `place`, if that is neither known nor asked.
+    /// Returns the question which objects are seen in the picture at `place`, unless it was already asked.
     pub fn wanted(&mut self, editor: &Editor, place: Place) -> Option<Question> {
         let wanted = (editor.shown_revision(), place.pixels);
         if self.asked == Some(wanted) {
@@ -53,29 +52,29 @@ impl SeenObjects {
         Some(question(editor, place, Vec::new()))
     }
 
-    /// Takes up an answer.
+    /// Takes over an answer.
     pub fn take(&mut self, revision: u64, map: ObjectMap) {
         self.map = Some((revision, map));
-        // Of another size, it has the lines elsewhere.
+        // The outlines are stored in pixels of the map, whose size may have changed.
         for lines in &mut self.lines {
             lines.made_for = None;
         }
     }
 
-    /// The map, if it is that of the scene on show.
+    /// The map, if it belongs to the scene on screen.
     pub fn map(&self, editor: &Editor) -> Option<&ObjectMap> {
         let (revision, map) = self.map.as_ref()?;
         (*revision == editor.shown_revision()).then_some(map)
     }
 
-    /// What is seen at a place of the picture at `view`, as far as that is known.
+    /// The thing seen at a position in the picture at `view`, if known.
     pub fn at(&self, editor: &Editor, view: Rect, at: Pos2) -> Option<Thing> {
         let map = self.map(editor)?;
         let [column, row] = pixel(map, view, at)?;
         map.at(column, row)
     }
 
-    /// Everything that is seen in a part of the picture at `view`; endless planes are behind it.
+    /// All items seen in a part of the picture at `view`, except infinite planes, which are behind everything.
     pub fn within(&self, editor: &Editor, view: Rect, part: Rect) -> Vec<Item> {
         let Some(map) = self.map(editor) else {
             return Vec::new();
@@ -99,7 +98,7 @@ impl SeenObjects {
         found.into_iter().map(item_of).collect()
     }
 
-    /// Draws lines around what is selected, and around what the pointer is over.
+    /// Draws outlines around the selection and around what is hovered.
     pub fn show(&mut self, painter: &Painter, editor: &Editor, view: Rect, mut hovered: Vec<Item>) {
         let Some((revision, map)) = &self.map else {
             return;
@@ -120,7 +119,7 @@ impl SeenObjects {
     }
 }
 
-/// Whether a thing has an end.
+/// Returns whether a thing is finite.
 pub fn ends(scene: &Scene, thing: Thing) -> bool {
     match thing {
         Thing::Object(index) => {
@@ -131,14 +130,14 @@ pub fn ends(scene: &Scene, thing: Thing) -> bool {
     }
 }
 
-/// The question what is seen in the picture at `place`, as if nothing of `without` were there.
+/// The question which objects are seen in the picture at `place`, with the things in `without` left out.
 pub fn question(editor: &Editor, place: Place, without: Vec<Thing>) -> Question {
     let (width, height) = place.pixels;
     let request = RenderRequest::of(editor.shown(), width, height);
     Question::Objects(editor.shown_revision(), Box::new(request), without)
 }
 
-/// The pixel at a place of the picture at `view`.
+/// The pixel of the map at a position in the picture at `view`.
 pub fn pixel(map: &ObjectMap, view: Rect, at: Pos2) -> Option<[usize; 2]> {
     let share = (at - view.min) / view.size();
     let inside = |share: f32, count: usize| {

@@ -1,21 +1,21 @@
-//! What the tools move: the selected objects and lights, as they are on show.
+//! The objects and lights that the tools move, as they are on screen.
 
 use glam::{DQuat, DVec3};
 
 use crate::editor::{Edit, Item, ItemKind, Selection};
 use crate::scene::{Light, Object, Scene, Shape};
 
-/// Something with a place.
+/// An item with a position.
 #[derive(Clone, Debug)]
 pub enum Movable {
-    /// An object of this place in the list.
+    /// An object with its index in the scene.
     Object(usize, Object),
-    /// A light of this place in the list.
+    /// A light with its index in the scene.
     Light(usize, Light),
 }
 
 impl Movable {
-    /// The item as it is on show, if it has a place.
+    /// The item as it is on screen, if it has a position.
     pub fn new(scene: &Scene, Item { kind, index }: Item) -> Option<Self> {
         match kind {
             ItemKind::Object => Some(Self::Object(index, scene.objects.get(index)?.clone())),
@@ -24,13 +24,13 @@ impl Movable {
         }
     }
 
-    /// What of a selection has a place.
+    /// The items of a selection that have a position.
     pub fn of(selected: &Selection, scene: &Scene) -> Vec<Self> {
         let items = selected.items().iter();
         items.filter_map(|item| Self::new(scene, *item)).collect()
     }
 
-    /// The box around it, if it ends.
+    /// The bounding box, if it is finite.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Object(_, object) => object.shape.bounds(),
@@ -42,7 +42,7 @@ impl Movable {
         }
     }
 
-    /// The shape of an object.
+    /// The shape, if it is an object.
     pub fn shape(&self) -> Option<&Shape> {
         match self {
             Self::Object(_, object) => Some(&object.shape),
@@ -50,7 +50,7 @@ impl Movable {
         }
     }
 
-    /// Where it is: the middle of what ends.
+    /// The middle of its bounding box; its position if it is infinite.
     pub fn middle(&self) -> DVec3 {
         match self {
             Self::Object(_, object) => object.shape.middle(),
@@ -58,7 +58,8 @@ impl Movable {
         }
     }
 
-    /// What is to be round where it is moved: the position of what is in one place, of all else the middle.
+    /// The point whose coordinates are rounded when it is moved: the position of shapes that have a single point,
+    /// the middle of others.
     pub fn position(&self) -> DVec3 {
         match self.shape() {
             Some(shape) if shape.points().len() == 1 => shape.position(),
@@ -66,7 +67,7 @@ impl Movable {
         }
     }
 
-    /// The change that moves it to a place.
+    /// The edit that moves it to a position.
     pub fn placed(&self, place: DVec3) -> Edit {
         match self {
             Self::Object(_, object) if object.shape.points().len() == 1 => {
@@ -83,7 +84,7 @@ impl Movable {
         }
     }
 
-    /// The change that moves it.
+    /// The edit that moves it by an offset.
     pub fn moved(&self, by: DVec3) -> Edit {
         match self {
             Self::Object(_, object) => self.reshaped(object.shape.moved(by), "move"),
@@ -91,7 +92,7 @@ impl Movable {
         }
     }
 
-    /// The change that turns it about a point.
+    /// The edit that rotates it about a point.
     pub fn turned(&self, about: DVec3, (axis, degrees): (DVec3, f64)) -> Edit {
         let by = DQuat::from_axis_angle(axis, degrees.to_radians());
         match self {
@@ -108,7 +109,7 @@ impl Movable {
         }
     }
 
-    /// The change that makes it so many times as large, and as far from a point.
+    /// The edit that scales its size and its distance from a point.
     pub fn scaled(&self, about: DVec3, by: f64) -> Edit {
         match self {
             Self::Object(_, object) => self.reshaped(object.shape.scaled(about, by), "size"),
@@ -123,7 +124,7 @@ impl Movable {
         }
     }
 
-    /// The change that gives it a radius, if it has one.
+    /// The edit that sets its radius, if it has one.
     pub fn with_radius(&self, radius: f64) -> Option<Edit> {
         match self {
             Self::Object(_, object) => {
@@ -143,7 +144,7 @@ impl Movable {
         }
     }
 
-    /// The change that gives it another shape.
+    /// The edit that gives it another shape.
     pub fn reshaped(&self, shape: Shape, field: &'static str) -> Edit {
         match self {
             Self::Object(index, object) => {
@@ -158,7 +159,7 @@ impl Movable {
     }
 }
 
-/// One change of all: by itself if it is one.
+/// Combines edits into one; a single edit stays as it is.
 pub fn together(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
     match edits.len() {
         0 => None,

@@ -1,4 +1,4 @@
-//! Files: opening, saving, and what is asked before something is lost.
+//! Files: opening, saving, and the questions before something is lost.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -215,7 +215,7 @@ fn a_model_is_dropped_with_all_that_lies_beside_it() {
         Scene::demo().objects.len() + 1
     );
     assert!(!harness.sees("Save changes"));
-    // A table of numbers is a path.
+    // A table of numbers is imported as a flight.
     let path = folder.join("path.CSV");
     std::fs::write(&path, "Time;X;Y;Z\n0;1,5;2;3\n1;2,5;2;3\n").expect("written");
     harness.drop_file(path);
@@ -296,7 +296,7 @@ fn what_is_copied_brings_its_mesh_into_another_window() {
         assert_eq!(triangles(harness, 1), own);
     }
     assert_ne!(triangles(&other, 0), own);
-    // In its own window it is the same file.
+    // In the window it was copied from, it is still the same mesh file.
     let text = one.editor().to_text().expect("a text");
     assert_eq!(text.matches("Mesh(file: \"m.obj\"").count(), 2, "{text}");
 }
@@ -333,7 +333,7 @@ fn a_window_that_rests_draws_nothing() {
         let output = &harness.window.output().viewport_output;
         output[&egui::ViewportId::ROOT].repaint_delay
     };
-    // It looks at its file for a while, as often as it asked for.
+    // For a while it checks its file as often as it scheduled.
     let start = std::time::Instant::now();
     while delay(&harness) < Duration::from_mins(1) {
         assert!(
@@ -345,7 +345,7 @@ fn a_window_that_rests_draws_nothing() {
         harness.window.step();
     }
     assert!(!harness.sees("Changed outside"));
-    // And sees all the same what becomes of it.
+    // It still notices changes of the file.
     let other = Document::of(Scene::empty()).to_text().expect("a text");
     std::fs::write(harness.folder.path().join("given.ron"), other).expect("written");
     harness.wait_for("what was written", |harness| {
@@ -389,7 +389,7 @@ fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imp
     }
     assert_eq!(harness.scene().objects.len(), 2);
     harness.window.get_by_label_contains("near.obj; F brings");
-    // The camera stays where the first import put it, and goes back with it.
+    // The camera stays where the first import put it, and is undone with that import.
     harness.press(Modifiers::COMMAND, Key::Z);
     let told = harness.window.query_by_label_contains("near.obj; F brings");
     assert!(told.is_none(), "it is undone");
@@ -517,7 +517,7 @@ fn what_is_imported_into_an_empty_scene_is_brought_into_the_picture() {
     assert!(off < 20.0, "{off} degrees off the middle");
 }
 
-/// The text of the demo with another radius of its first ball.
+/// The text of the demo with another radius of its first sphere.
 fn demo_text(radius: f64) -> String {
     let mut scene = Scene::demo();
     let Shape::Sphere(ball) = &mut scene.objects[0].shape else {
@@ -528,7 +528,7 @@ fn demo_text(radius: f64) -> String {
     document.to_text().expect("a text")
 }
 
-/// The window on a file, which another program then writes.
+/// Opens a file in a window, applies `edit`, and then changes the file as another program would.
 fn changed_outside(edit: impl FnOnce(&mut EditorHarness)) -> (EditorHarness, PathBuf) {
     let mut harness = EditorHarness::with(|_| Vec::new(), Some(&demo_text(20.0)));
     let path = harness.folder.path().join("given.ron");
@@ -595,22 +595,22 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.type_into("position x", "5");
     let folder = harness.folder.path().to_owned();
     let wait = |harness: &mut EditorHarness, name: &str, index: usize, height: f64| {
-        // The window has looked at what was there.
+        // The window has checked the file before it changes.
         std::thread::sleep(Duration::from_millis(1100));
         harness.window.step();
         std::fs::write(folder.join(name), mesh(height)).expect("written");
         harness.wait_for("the mesh", |harness| top(harness, index) == height);
     };
     wait(&mut harness, "roof.obj", 0, 7.0);
-    // What was missing is there now.
+    // The file that was missing now exists.
     wait(&mut harness, "late.obj", 1, 4.0);
     assert!(harness.scene().mesh_problems().next().is_none());
-    // The position that was typed is all that is not saved, and its undo brings no old mesh back.
+    // Only the typed position is unsaved, and undoing it does not bring back an old mesh.
     assert!(harness.editor().is_dirty());
     harness.press(CTRL, Key::Z);
     assert!(!harness.editor().is_dirty());
     assert_eq!((top(&harness, 0), top(&harness, 1)), (7.0, 4.0));
-    // What was copied before is pasted as it is now.
+    // A copy made before is pasted with the current mesh.
     harness.click("roof");
     harness.window.event(Event::Copy);
     harness.settle();
@@ -620,12 +620,13 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     wait(&mut harness, "roof.obj", 0, 8.0);
     harness.window.event(Event::Paste(copied));
     harness.settle();
-    // Behind what it is a copy of.
+    // Listed after its original.
     assert_eq!(top(&harness, 1), 8.0);
     harness.press(CTRL, Key::Z);
     wait(&mut harness, "roof.obj", 0, 7.0);
     assert!(!harness.editor().is_dirty());
-    // What is broken stays as it was, and is told; until it is as it was before, to the second.
+    // A broken file is reported, and the mesh stays as it was, until the file is restored with its old modification
+    // time.
     let roof = folder.join("roof.obj");
     let good = std::fs::read(&roof).expect("there");
     let time = std::fs::metadata(&roof).expect("there").modified();
@@ -640,7 +641,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     std::fs::write(&roof, "f 1 2 3\n").expect("written");
     harness.wait_for("the message", is_told);
     assert_eq!(top(&harness, 0), 7.0);
-    // It is saved in the scene then, which follows the file no more.
+    // The mesh is now saved within the scene, which no longer depends on the file.
     harness.click("roof");
     harness.type_into("position x", "6");
     harness.press(CTRL, Key::S);
@@ -671,7 +672,7 @@ fn a_name_that_is_typed_is_not_given_to_another_thing_that_comes_in_its_place() 
     let mut scene = Scene::demo();
     scene.objects.remove(0);
     let text = Document::of(scene.clone()).to_text().expect("a text");
-    // The window has looked at what was there.
+    // The window has checked the file before it changes.
     std::thread::sleep(Duration::from_millis(1100));
     harness.window.step();
     std::fs::write(&path, text).expect("written");
@@ -710,7 +711,7 @@ fn a_save_replaces_nothing_that_was_not_seen() {
     let (mut harness, path) = changed_outside(|harness| {
         harness.click("Sphere 2");
         harness.type_into("radius", "7");
-        // The window has looked at the file, and does so again only in a second.
+        // The window has just checked the file, and does so again only in a second.
         harness.settle();
     });
     harness.press(CTRL, Key::S);
@@ -740,7 +741,7 @@ fn a_file_that_is_gone_is_told_and_what_is_open_counts_as_unsaved() {
     std::fs::rename(&path, &elsewhere).expect("moved");
     harness.wait_for("the message", is_told);
     assert!(harness.editor().is_dirty());
-    // It is there again.
+    // The file exists again.
     std::fs::rename(&elsewhere, &path).expect("moved");
     harness.wait_for("the file again", |harness| !is_told(harness));
     assert!(!harness.editor().is_dirty());
@@ -761,7 +762,7 @@ fn a_file_that_another_program_has_broken_is_told_and_what_is_open_counts_as_uns
     std::fs::write(&path, "Scene(").expect("written");
     harness.wait_for("the message", |harness| harness.sees("given.ron:1"));
     assert!(harness.editor().is_dirty());
-    // It is gone, which is said in place of that; and whole again.
+    // It is deleted, which replaces the message; and then valid again.
     std::fs::remove_file(&path).expect("removed");
     harness.wait_for("the message", |harness| harness.sees("not there any more"));
     assert!(!harness.sees("given.ron:1"));
@@ -796,7 +797,7 @@ fn a_question_that_is_left_open_does_not_end_the_watch() {
     harness.wait_for("what was written", |harness| {
         radius(harness.scene(), 0) == 31.5
     });
-    // Nothing of one's own is to be saved: theirs is taken.
+    // Without unsaved changes here, the file of the other program is loaded.
     std::fs::write(&path, demo_text(12.5)).expect("written");
     harness.press(CTRL, Key::S);
     assert!(harness.window.query_by_label("Keep mine").is_none());
@@ -820,7 +821,7 @@ fn a_flight_that_is_still_recorded_is_asked_about() {
     harness.settle();
     assert!(harness.editor().timeline().recorded().is_some());
     harness.press(CTRL, Key::N);
-    // Enter presses the button that is meant.
+    // Enter presses the default button.
     harness.press(Modifiers::NONE, Key::Enter);
     let path = harness.folder.path().join("flown.ron");
     harness.wait_for("the file", |_| path.exists());
@@ -880,7 +881,7 @@ fn what_is_done_while_the_desktop_asks_is_asked_about() {
     let mut harness = EditorHarness::asked(|_| Box::new(dialogs.clone()), None);
     let path = harness.folder.path().join("other.ron");
     std::fs::write(&path, demo_text(31.5)).expect("written");
-    // While a dialog is open, nothing is settled.
+    // While a dialog is open, the window does not settle.
     let tap = |harness: &mut EditorHarness, modifiers: Modifiers, key: Key| {
         harness.window.key_press_modifiers(modifiers, key);
         (0..5).for_each(|_| harness.window.step());
@@ -893,7 +894,7 @@ fn what_is_done_while_the_desktop_asks_is_asked_about() {
     harness.window.get_by_label("Save changes to demo?");
     harness.click("Don't save");
     assert_eq!(harness.editor().path(), Some(path.as_path()));
-    // What was to be saved is not there any more.
+    // The document that was to be saved is no longer open.
     harness.click("Sphere 1");
     harness.type_into("radius", "12");
     let copy = harness.folder.path().join("copy.ron");

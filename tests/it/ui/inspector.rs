@@ -1,4 +1,4 @@
-//! The inspector: every number, colour and name.
+//! The inspector: numbers, colours and names.
 
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
 use crate::timeline::animation;
 
-/// Clicks a number, which then waits for what is typed.
+/// Clicks a number to edit it as text.
 fn put_cursor_into(harness: &mut EditorHarness, field: &str) {
     let number = harness
         .window
@@ -166,7 +166,7 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
         !harness.sees("measuring this scene")
     });
     harness.settle();
-    // Whichever is cheapest today, the default is closer than that by far.
+    // Whichever is cheapest today, the default is far more accurate than required.
     assert_ne!(harness.scene().render.antialias, Sampling::default());
     assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
     harness.window.get_by_label("Needs").click();
@@ -182,7 +182,7 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
 fn what_was_measured_is_taken_up_when_nothing_is_dragged() {
     let mut small = Scene::demo();
     (small.render.width, small.render.height) = (128, 96);
-    // None of those that are measured: another one is chosen for sure, however busy the machine is.
+    // Not among the measured samplings, so that another one is certainly chosen, however busy the machine is.
     small.render.antialias = Sampling::Grid(5);
     let mut harness = EditorHarness::on(small.clone());
     harness.click("Picture");
@@ -238,7 +238,7 @@ fn panels_keep_their_width_while_numbers_change() {
     let before = left(&harness);
     harness.window.key_down(Key::ArrowRight);
     harness.window.key_down(Key::W);
-    // Past the back, where one of the numbers is nearly nothing.
+    // Past the back, where one of the numbers is nearly zero.
     for _ in 0..300 {
         harness.window.step();
         assert_eq!(left(&harness), before);
@@ -267,7 +267,7 @@ fn escape_gives_a_typed_vector_up() {
     assert_eq!(harness.scene().objects[0], before);
 }
 
-/// Selects both balls; where they are, from the first to the second.
+/// Selects both spheres; returns their centres.
 fn both_balls(harness: &mut EditorHarness) -> [DVec3; 2] {
     let centers = [0, 1].map(|ball| center(harness.scene(), ball));
     let places = centers.map(|point| place(harness, point));
@@ -313,7 +313,7 @@ fn of_several_a_dragged_position_moves_all_and_a_typed_one_is_for_all() {
     let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
     assert_eq!((now.y, then.y), (70.0, 70.0));
     assert_eq!((now.x, then.x), (one.x, other.x));
-    // No length is below zero.
+    // A negative radius is rejected.
     harness.type_into("radius", "-5");
     assert_eq!(
         [0, 1].map(|ball| radius(harness.scene(), ball)),
@@ -391,7 +391,7 @@ fn a_group_gets_keys_as_one_and_moves_from_one_to_the_other() {
     let [now, then] = shown(&harness);
     assert!((now - one - (then - other)).length() < 1e-9, "{now} {then}");
     assert_ne!(now, one);
-    // Both again, and both away.
+    // Sets both again, then removes both.
     harness.click("key position");
     assert_eq!(keys(&harness), [1, 1]);
     assert_eq!(shown(&harness), [one, other]);
@@ -478,7 +478,7 @@ fn others_get_what_the_last_of_them_has_already() {
     let mut harness = EditorHarness::new();
     both_balls(&mut harness);
     let (x, other) = (center(harness.scene(), 1).x, center(harness.scene(), 0));
-    // Confirmed without a change: Enter in a field that was only looked at.
+    // Enter in a field without a change confirms its value.
     for field in ["radius", "center x", "specular green"] {
         put_cursor_into(&mut harness, field);
         harness.press(Modifiers::NONE, Key::Enter);
@@ -487,7 +487,7 @@ fn others_get_what_the_last_of_them_has_already() {
     assert_eq!([0, 1].map(|ball| radius(scene, ball)), [20.0; 2]);
     assert_eq!(center(scene, 0), DVec3::new(x, other.y, other.z));
     assert_eq!(center(scene, 1).x, x);
-    // Left without that, a field changes nothing.
+    // Leaving a field without Enter changes nothing.
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::Z);
     let before = harness.scene().clone();
@@ -514,11 +514,11 @@ fn a_change_of_a_pack_is_for_the_packs_of_all() {
         assert_eq!(pack.diffuse, before[name].diffuse, "{name}");
     }
     assert_eq!(harness.scene().color_packs["plane"], before["plane"]);
-    // What differs is told, and only what differs.
+    // Exactly the differing properties are listed.
     harness
         .window
         .get_by_label("Not the same for all: center, radius, color pack, ambient, diffuse");
-    // A channel alone is one alone for the others, too; a colour that is pasted is for all.
+    // Editing one channel changes only that channel of the others; a pasted colour is set for all.
     harness.type_into("ambient red", "10");
     for name in ["sphere 1", "sphere 2"] {
         let own = before[name].ambient;

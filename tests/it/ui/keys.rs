@@ -1,4 +1,4 @@
-//! Keys on the line of time where hands are less tidy: between frames, beyond the end, onto each other.
+//! Awkward cases of keys on the timeline: between frames, beyond the end, on top of each other.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
@@ -9,19 +9,19 @@ use super::tools::{click, drag, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
 use crate::timeline::{animation, times};
 
-/// A window on a demo whose camera moves at ten frames a second, with keys at these times.
+/// A window on the demo with camera keys at these times, at ten frames per second.
 fn window(times: &[f64]) -> EditorHarness {
     let keys: Vec<(f64, f64)> = times.iter().map(|time| (*time, *time)).collect();
     animation(&keys)
 }
 
-/// Where a time is on the ruler, which shows four seconds.
+/// Position of a time on the ruler, which shows four seconds.
 fn on_ruler(harness: &EditorHarness, seconds: f32) -> Pos2 {
     let ruler = harness
         .window
         .get_by_role_and_label(Role::Slider, "Playhead")
         .rect();
-    // It can be hit from a little to both sides.
+    // Its area of interaction is wider than the ruler, on both sides.
     let inner = ruler.shrink2(egui::vec2(8.0, 0.0));
     Pos2::new(
         inner.left() + inner.width() * seconds / 4.0,
@@ -66,7 +66,7 @@ fn a_view_that_was_flown_to_is_kept_for_the_next_key() {
     assert_eq!(harness.editor().shown().camera, flown);
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(harness.scene().animation.keys[1].value, flown);
-    // On its way, the shot is what is looked at.
+    // At a time within the flight, the view follows the shot.
     fly(&mut harness);
     seek(&mut harness, 1.0);
     assert!(harness.editor().looks_through());
@@ -131,7 +131,7 @@ fn brackets_go_from_key_to_key_wherever_those_are_between_frames() {
         .map(|time| (time * 10.0).round() as i32)
         .collect();
     assert_eq!(frames, [0, 3, 4, 10, 20, 10, 4, 3, 0]);
-    // The last key is nearer to a frame that is not made.
+    // The frame nearest to the last key is beyond the last frame.
     harness.press(CTRL, Key::End);
     assert!((harness.editor().shown_time() - 1.9).abs() < 1e-9);
 }
@@ -161,7 +161,7 @@ fn escape_takes_the_copy_of_a_key_back() {
     give_up_a_drag(CTRL);
 }
 
-/// With these keys held all along.
+/// Cancels a drag during which these modifier keys are held.
 fn give_up_a_drag(held: Modifiers) {
     let mut harness = window(&[0.0, 1.0, 2.0]);
     harness.window.event(Event::ModifiersChanged(held));
@@ -192,7 +192,7 @@ fn give_up_a_drag(held: Modifiers) {
 #[test]
 fn all_selected_keys_are_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
-    // From farther back the flight is in sight.
+    // From farther back, the flight is in view.
     harness.window.key_down(Key::S);
     (0..60).for_each(|_| harness.window.step());
     harness.window.key_up(Key::S);
@@ -258,13 +258,13 @@ fn a_key_follows_a_pointer_that_leaves_the_window_and_comes_back() {
 
 #[test]
 fn a_key_takes_the_place_of_one_in_the_same_frame() {
-    // Those of a recorded flight are between frames.
+    // Keys of a recorded flight lie between frames.
     let mut harness = window(&[0.0, 0.46, 1.04, 2.0]);
     for _ in 0..2 {
         harness.press(Modifiers::NONE, Key::CloseBracket);
         harness.press(Modifiers::NONE, Key::K);
     }
-    // In their frames, where the view was put into them.
+    // Replaced by the view, they are now exactly on frames.
     assert_eq!(times(&harness), [0.0, 0.5, 1.0, 2.0]);
     harness.press(Modifiers::NONE, Key::Period);
     harness.press(Modifiers::NONE, Key::K);
@@ -305,7 +305,7 @@ fn what_is_keyed_can_have_the_value_that_it_had_without_keys() {
     harness.type_into("intensity", "0.8");
     harness.type_into("intensity", "0.2");
     assert_eq!(harness.editor().shown().lights[0].intensity, 0.2);
-    // To hide it is no change of its keys.
+    // Hiding it does not change its keys.
     harness.type_into("intensity", "0.6");
     let animation = harness.scene().animation.clone();
     harness.click("Hide Light 1");
@@ -340,7 +340,7 @@ fn home_over_the_line_of_time_leaves_the_camera() {
     let above = on_ruler(&harness, 1.5);
     harness.window.hover_at(above);
     harness.settle();
-    // Some of the line, then all of it again.
+    // Zooms in, then shows everything again.
     let key = |harness: &EditorHarness| harness.window.get_by_label("Key 2").rect().center().x;
     let before = key(&harness);
     harness.window.event(egui::Event::Zoom(2.0));
@@ -367,7 +367,7 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     harness.click("Plane");
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));
-    // Where the pointer is over the picture as well, whatever is selected.
+    // With the pointer over the picture, the things are selected, whatever was selected before.
     harness.window.hover_at(above);
     harness.settle();
     harness.press(CTRL, Key::A);
@@ -383,7 +383,7 @@ fn all_that_is_selected_is_all_things_or_all_keys() {
     assert!(!scene.objects.iter().any(|object| object.visible));
     assert!(!scene.lights.iter().any(|light| light.visible));
 
-    // Without keys there are things alone.
+    // Without keys, only things can be selected.
     let mut harness = window(&[]);
     harness.press(CTRL, Key::A);
     assert_eq!(selected(&harness), (11, 0));

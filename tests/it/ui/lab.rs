@@ -9,7 +9,7 @@ use crate::harness::{CTRL, EditorHarness};
 
 #[test]
 fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
-    // Jagged: what is cheapest within 8 bits is another setting, whichever that is today.
+    // With jagged edges, so that the cheapest setting within 8 bits is another one, whichever it is today.
     let mut jagged = Scene::demo();
     jagged.render.antialias = Sampling::Centres;
     let mut harness = EditorHarness::on(jagged);
@@ -29,7 +29,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
             .query_by_label("stale: measure again")
             .is_none()
     );
-    // What is told of the dot stands in a column, and is in the window.
+    // The details of the dot are laid out in a column, and fit into the window.
     let (button, faces) = ("Use this", "×64");
     let [button, faces] = [button, faces].map(|name| harness.window.get_by_label(name).rect());
     assert!(
@@ -67,7 +67,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     harness.window.get_by_label("stale: measure again");
     harness.press(CTRL, Key::L);
     assert!(harness.window.query_by_label("Measure").is_none());
-    // What was measured of one document is not looked at in another.
+    // What was measured of one document is not shown for another.
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::L);
     harness.click("Cheapest way below");

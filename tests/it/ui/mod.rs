@@ -1,4 +1,4 @@
-//! The window, headless: its widgets are driven by the names that screen readers hear.
+//! Headless tests of the window: its widgets are found by their accessible names.
 
 mod files;
 mod inspector;

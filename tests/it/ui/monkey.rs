@@ -1,4 +1,4 @@
-//! Twenty thousand events that nobody means: nothing panics, and undoing everything gives back the first scene.
+//! Twenty thousand random events: nothing panics, and undoing everything restores the first scene.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -13,24 +13,24 @@ use glint::worker::Background;
 
 use crate::harness::{CTRL, EditorHarness};
 
-/// Events between two times that everything is undone: fewer than the steps that are remembered.
+/// Events before everything is undone: fewer than the number of undo steps kept.
 const ROUND: usize = 400;
 const ROUNDS: usize = 50;
-/// Events of a frame.
+/// Events per frame.
 const AT_ONCE: usize = 8;
 
-/// Dialogs that nobody answers: no file is written where it could do harm.
+/// Dialogs that stay open, so that no file is written where it could do harm.
 #[derive(Clone, Default)]
 pub struct Unanswered(Rc<RefCell<Vec<Sender<Option<PathBuf>>>>>);
 
 impl Unanswered {
-    /// Answers the last of those that are open.
+    /// Answers the last open dialog.
     pub fn answer(&self, path: &Path) {
         let asked = self.0.borrow_mut().pop().expect("a dialog");
         asked.send(Some(path.to_owned())).expect("it is waited for");
     }
 
-    /// Closes those that are open.
+    /// Closes all open dialogs.
     pub fn close(&self, harness: &mut EditorHarness) {
         self.0.borrow_mut().clear();
         harness.window.step();
@@ -100,7 +100,7 @@ const KEYS: [Key; 36] = [
     Key::F2,
 ];
 
-/// A monkey's hands.
+/// A source of random input, which remembers what is held down.
 pub struct Monkey {
     pub random: Random,
     at: Pos2,
@@ -109,7 +109,7 @@ pub struct Monkey {
 }
 
 impl Monkey {
-    /// One that begins in the middle of the picture.
+    /// Creates a monkey whose pointer starts in the middle of the picture.
     pub fn new(seed: u64) -> Self {
         Self {
             random: Random(seed),
@@ -119,7 +119,7 @@ impl Monkey {
         }
     }
 
-    /// Does this many things, and lets everything go.
+    /// Performs this many actions, and then releases everything.
     pub fn play(&mut self, harness: &mut EditorHarness, things: usize) {
         for thing in 0..things {
             for event in self.events() {
@@ -135,12 +135,12 @@ impl Monkey {
         leave_everything(harness);
     }
 
-    /// What it does next.
+    /// The events of the next action.
     fn events(&mut self) -> Vec<Event> {
         let random = &mut self.random;
         match random.below(10) {
             0..=3 => {
-                // Mostly a little; never in the menu, where windows of the desktop are opened.
+                // Mostly small movements; never in the menu, where windows of the desktop are opened.
                 let far = random.below(3) == 0;
                 let (x, y) = (random.below(1280) as f32, 40.0 + random.below(760) as f32);
                 let near = self.at + vec2((x - 640.0) / 20.0, (y - 420.0) / 20.0);
@@ -185,7 +185,7 @@ impl Monkey {
                 let with = [Modifiers::NONE, Modifiers::NONE, CTRL, Modifiers::ALT];
                 let mut modifiers = random.of(&with);
                 if modifiers == CTRL && key == Key::K {
-                    // Everything can be found by its name.
+                    // The finder offers every command by name.
                     modifiers = Modifiers::NONE;
                 }
                 self.keys.push((key, modifiers));
@@ -209,7 +209,7 @@ impl Monkey {
         }
     }
 
-    /// Lets everything go.
+    /// Releases all keys and buttons.
     fn rest(&mut self) -> Vec<Event> {
         let mut events = Vec::new();
         if let Some((button, modifiers)) = self.down.take() {
@@ -263,7 +263,7 @@ fn a_monkey_breaks_nothing_that_undo_does_not_mend() {
     assert!(steps > 500, "{steps} steps: the monkey slept");
 }
 
-/// Goes out of menus, questions, fields and recordings.
+/// Leaves menus, questions, fields and recordings.
 fn leave_everything(harness: &mut EditorHarness) {
     for _ in 0..8 {
         tap(harness, Key::Escape, Modifiers::NONE);
@@ -277,7 +277,7 @@ fn leave_everything(harness: &mut EditorHarness) {
     }
 }
 
-/// Presses a key and lets it go.
+/// Presses and releases a key.
 pub fn tap(harness: &mut EditorHarness, key: Key, modifiers: Modifiers) {
     harness.window.event(Event::ModifiersChanged(modifiers));
     harness.window.event(key_event(key, modifiers, true));

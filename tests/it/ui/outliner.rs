@@ -66,7 +66,7 @@ fn where_groups_are_not_listed_nothing_is_dragged_into_one() {
     };
     drag(&mut harness);
     assert_eq!(harness.scene(), &scene);
-    // Where they are listed, the same puts it there.
+    // Without the filter, the same drag moves it there.
     harness.window.get_by_label("Filter").focus();
     harness.press(CTRL, Key::A);
     harness.press(Modifiers::NONE, Key::Backspace);
@@ -88,7 +88,7 @@ fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     harness.press(Modifiers::NONE, Key::ArrowUp);
     harness.press(Modifiers::NONE, Key::ArrowUp);
     assert_eq!(harness.selected(), ["Light 2"], "over the title of a list");
-    // By the keys alone, from the row that has the focus: to the next one, and not to an eye.
+    // With the keyboard only, from the focused row: to the next row, and not to an eye button.
     let picture = harness.view().center();
     hover(&mut harness, picture);
     harness.window.get_by_label("Sphere 1").focus();
@@ -121,7 +121,7 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
     );
     harness.press(Modifiers::NONE, Key::ArrowUp);
     assert_eq!(harness.selected(), ["Light 2"]);
-    // Of what is listed, whatever was walked to before.
+    // Among the listed rows, wherever the selection was before.
     harness.window.get_by_label("Filter").focus();
     harness.window.get_by_label("Filter").type_text("triangle");
     harness.settle();
@@ -142,7 +142,7 @@ fn a_name_that_was_edited_is_not_edited_in_the_next_scene() {
     harness.drop_file("scenes/mirrors.ron".into());
     assert!(harness.editor().path().is_some() && !field(&harness));
 
-    // While a name is edited, exports can be asked for as files can be saved: that ends it.
+    // Ctrl+Shift+E opens the exports even while a name is edited, which ends the editing.
     let name = harness.scene().objects[0].name.clone();
     harness.click(&name);
     harness.press(Modifiers::NONE, Key::F2);
@@ -219,7 +219,7 @@ fn a_name_that_is_edited_out_of_sight_is_left() {
             source: egui::MouseWheelSource::Wheel,
             modifiers: Modifiers::NONE,
         });
-        // It rolls out.
+        // The scrolling is animated.
         harness.window.run_steps(40);
         harness.settle();
     };
@@ -297,7 +297,7 @@ fn things_are_deleted_with_the_packs_that_they_wear() {
     harness.press(Modifiers::NONE, Key::Delete);
     let scene = harness.scene();
     assert!(scene.objects.len() == 8 && !scene.color_packs.contains_key("sphere 1"));
-    // Shift adds what is in another list.
+    // Shift adds an item of another list.
     harness.click("Light 1");
     let shifted = harness.window.get_by_label("Sphere 2");
     shifted.click_modifiers(Modifiers::SHIFT);

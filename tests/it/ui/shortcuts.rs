@@ -1,4 +1,4 @@
-//! Keys: who gets them, and what Escape leaves.
+//! Keyboard shortcuts: who receives them, and what Escape leaves.
 
 use egui::{Event, Key, Modifiers, Theme};
 use egui_kittest::kittest::Queryable as _;
@@ -143,7 +143,7 @@ fn a_shortcut_is_one_however_long_control_was_held_before() {
     assert_eq!(harness.scene().camera, there, "and nothing flies meanwhile");
 }
 
-/// Types into the finder, and takes what is first.
+/// Types into the finder and runs the first match.
 fn find(harness: &mut EditorHarness, text: &str) {
     harness.press(CTRL, Key::K);
     harness.window.event(Event::Text(text.to_owned()));
@@ -178,7 +178,7 @@ fn a_menu_closes_when_its_entry_is_chosen_by_a_key() {
     harness.press(Modifiers::NONE, Key::Enter);
     assert!(harness.editor().selection().items().len() > 1);
     assert!(harness.window.query_by_label("Select all").is_none());
-    // Keys with Alt are others.
+    // With Alt, a key means something else.
     let before = harness.scene().camera.clone();
     harness.press(Modifiers::ALT, Key::F);
     assert_eq!(harness.scene().camera, before);

@@ -1,4 +1,4 @@
-//! Groups, packs that are dragged, bookmarks, and the way of Tab through the panels.
+//! Groups, dragging of color packs, bookmarks, and the order in which Tab visits the panels.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
@@ -55,7 +55,7 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.click("Fold Group 1");
     assert!(harness.window.query_by_label("Sphere 2").is_none());
     harness.click("Unfold Group 1");
-    // One click takes hold of both, besides others with Shift or Ctrl, with which another one lets go of them.
+    // One click selects both members; Shift or Ctrl adds them to the selection, and Ctrl again removes them.
     harness.click("Sphere 1");
     harness.click("Group 1");
     assert_eq!(harness.editor().selection().items().len(), 2);
@@ -76,7 +76,7 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.settle();
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Balls", "Balls", ""]);
-    // The key is for groups, too.
+    // The key renames groups, too.
     harness.click("Balls");
     harness.press(NONE, Key::F2);
     harness.window.event(Event::Text("Toys".to_owned()));
@@ -84,7 +84,7 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Toys", "Toys", ""]);
     harness.press(CTRL, Key::Z);
-    // Two groups do not become one by a name.
+    // Renaming does not merge two groups.
     harness.click("Triangle 1");
     let second = harness.window.get_by_label("Triangle 2");
     second.click_modifiers(Modifiers::SHIFT);
@@ -96,7 +96,7 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
         .get_by_label_contains("There is another group named “Balls”");
     assert_eq!(groups(&harness), ["Balls", "Balls", "Group 1"]);
     harness.click("Dismiss");
-    // What is folded is so still.
+    // A folded group stays folded when it is renamed.
     harness.click("Fold Group 1");
     harness.click("Group 1");
     harness.press(NONE, Key::F2);
@@ -107,13 +107,13 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     harness.window.get_by_label("Fold Balls");
     harness.click("Dismiss");
     harness.press(CTRL, Key::Z);
-    // What is dropped on it is in it.
+    // An object dropped on a group's row becomes a member.
     let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
     carry(&mut harness, from, to);
     let plane = harness.scene().objects.iter();
     let mut plane = plane.filter(|object| object.name == "Plane");
     assert_eq!(plane.next().expect("the plane").group, "Balls");
-    // A file keeps it.
+    // The file stores it.
     let written = text(harness.scene().clone());
     let read = Document::from_text(&written).expect("a scene").scene;
     assert_eq!(&read, harness.scene());
@@ -139,7 +139,7 @@ fn in_the_picture_a_click_takes_a_group_and_another_one_goes_inside() {
     harness.click("Plane");
     click(&mut harness, ball, Modifiers::SHIFT);
     assert_eq!(count(&harness), 3, "all of it besides");
-    // Two clicks at once are both.
+    // A double click counts as two clicks.
     harness.click("Plane");
     (0..60).for_each(|_| harness.window.step());
     for _ in 0..2 {
@@ -148,7 +148,7 @@ fn in_the_picture_a_click_takes_a_group_and_another_one_goes_inside() {
         harness.settle();
     }
     assert_eq!(count(&harness), 1);
-    // What is dragged is all of it.
+    // A drag moves the whole group.
     harness.click("Plane");
     let before = [0, 1].map(|index| center(harness.scene(), index));
     carry(&mut harness, ball, ball + vec2(30.0, 0.0));
@@ -174,7 +174,7 @@ fn packs_are_dragged_onto_rows_and_into_the_picture() {
     carry(&mut harness, from, to);
     assert_eq!(pack(&harness, 1), "plane");
     assert_eq!(pack(&harness, 0), "plane");
-    // The marker of a light wears one as well.
+    // A light's marker can be given a color pack as well.
     let to = middle(&harness, "Light 1");
     carry(&mut harness, from, to);
     let marker = harness.scene().lights[0].marker.as_ref();
@@ -205,7 +205,7 @@ fn a_bookmark_is_a_view_to_come_back_to() {
     harness.choose("View", "Go to bookmark");
     harness.click("View 1");
     assert_eq!(harness.scene().camera, before);
-    // It is in the file, and in the inspector of the camera.
+    // It is stored in the file, and listed in the inspector of the camera.
     harness.type_name("bookmark 1", "Front");
     assert_eq!(harness.scene().bookmarks[0].name, "Front");
     let written = text(harness.scene().clone());
@@ -352,7 +352,7 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
         let row = harness.window.get_by_label(name).rect();
         pos2(row.center().x, row.top() + share * row.height())
     };
-    // Below a row that is in no group: it leaves its own, which stays where it was.
+    // Below a row that is in no group: it leaves its own group, which stays where it was.
     let (from, to) = (
         middle(&harness, &members[0]),
         half(&harness, "Triangle 4", 0.8),
@@ -365,14 +365,14 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
     assert_eq!(objects[there.expect("it") - 1].name, "Triangle 4");
     let item = harness.editor().selection().item();
     assert_eq!(item, there.map(Item::object), "it is what is selected");
-    // Back, above the member that is left.
+    // Back again, above the remaining member.
     let (from, to) = (
         middle(&harness, &members[0]),
         half(&harness, &members[1], 0.2),
     );
     carry(&mut harness, from, to);
     assert_eq!(names(&harness, "Balls"), members);
-    // The group itself, below a row; within another group it has no place.
+    // The group itself, below a row; it cannot be dropped within another group.
     let (from, to) = (middle(&harness, "Balls"), half(&harness, "Triangle 4", 0.8));
     carry(&mut harness, from, to);
     assert_eq!(names(&harness, "Balls"), members);
@@ -388,7 +388,7 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
         .position(|object| object.name == "Triangle 1");
     assert_eq!(objects[there.expect("it") + 1].name, members[0]);
     assert_eq!(names(&harness, "Balls"), members);
-    // A light goes above or below another.
+    // A light is moved above or below another.
     let (from, to) = (middle(&harness, "Light 1"), half(&harness, "Light 2", 0.2));
     let before = harness.scene().clone();
     carry(&mut harness, from, to);
@@ -428,7 +428,7 @@ fn undo_is_heard_beside_a_popup_which_stays() {
     harness.press(CTRL, Key::Z);
     assert!(is_open(&harness));
     assert_eq!(harness.scene(), &before);
-    // What is no step back or forth waits until it is closed.
+    // Other keys than undo and redo have no effect until the popup is closed.
     harness.press(NONE, Key::O);
     assert_eq!(harness.scene(), &before);
 }
@@ -466,7 +466,7 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     for _ in 0..2 {
         harness.click("Sphere 1");
         harness.press(CTRL, Key::D);
-        // Two clicks in a row would be one on its name.
+        // Otherwise two clicks in a row would be a double click on its name.
         (0..60).for_each(|_| harness.window.step());
     }
     let found = places(&harness, "Sphere");
@@ -484,7 +484,7 @@ fn shift_selects_what_is_listed_between_two_rows() {
     for index in [0, 3] {
         scene.objects[index].group = "Balls".to_owned();
     }
-    // Shown: Balls (Sphere 1, Triangle 2), Sphere 2, Triangle 1, Triangle 3.
+    // Listed: Balls (Sphere 1, Triangle 2), Sphere 2, Triangle 1, Triangle 3.
     let mut harness = EditorHarness::on(scene);
     let selected = |harness: &EditorHarness| -> Vec<String> {
         let items = harness.editor().selection().items().iter();

@@ -1,5 +1,5 @@
-//! A long day of a monkey that also opens, flies, records, plays, imports, saves and exports: nothing hangs, memory
-//! does not grow, and what it leaves behind can be read. `GLINT_SOAK=200000` asks for so many events.
+//! A long session of random input that also opens, flies, records, plays, imports, saves and exports: nothing
+//! hangs, memory does not grow, and everything written can be read. `GLINT_SOAK=200000` sets the number of events.
 
 use std::path::{Path, PathBuf};
 
@@ -11,23 +11,23 @@ use super::monkey::{Monkey, Unanswered, tap};
 use crate::harness::{CTRL, EditorHarness};
 use crate::scenes::files_in;
 
-/// Events where nobody asks for more.
+/// Number of events, unless the environment asks for more.
 const FEW: usize = 8_000;
-/// Events between two looks at everything.
+/// Events between two complete checks.
 const ROUND: usize = 400;
-/// Rounds in the beginning whose memory is not yet what the rest is held against.
+/// Number of rounds at the beginning whose memory use is the reference for the later ones.
 const WARM: usize = 8;
-/// Bytes of the largest scene that is opened.
+/// Size of the largest scene that is opened, in bytes.
 const LARGEST: usize = 6_000;
 
-/// The resident memory of this process in MiB; nothing where the system does not tell.
+/// The resident memory of this process in MiB; `None` if the system does not report it.
 fn memory() -> Option<f64> {
     let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
     let resident: f64 = pages.split(' ').nth(1)?.parse().ok()?;
     Some(resident * 4096.0 / f64::from(1 << 20))
 }
 
-/// Presses a button, if it is there.
+/// Presses a button if it exists; returns whether it does.
 fn press(harness: &mut EditorHarness, name: &str) -> bool {
     let is_there = match harness.window.query_all_by_label(name).next() {
         None => false,
@@ -41,14 +41,14 @@ fn press(harness: &mut EditorHarness, name: &str) -> bool {
     is_there
 }
 
-/// Drops a file onto the window, and the changes before.
+/// Drops a file onto the window, discarding unsaved changes.
 fn drop_file(harness: &mut EditorHarness, path: &Path) {
     harness.drop_file(path.to_owned());
     press(harness, "Don't save");
     harness.settle();
 }
 
-/// Flies a while, and turns.
+/// Flies and turns for a while.
 fn fly(harness: &mut EditorHarness) {
     for key in [Key::W, Key::ArrowRight] {
         harness.window.key_down(key);
@@ -61,7 +61,7 @@ fn fly(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Records a flight and makes keys of it. Whether there are some.
+/// Records a flight and makes keys of it. Returns whether there are any.
 fn record(harness: &mut EditorHarness) -> bool {
     tap(harness, Key::R, Modifiers::NONE);
     fly(harness);
@@ -71,7 +71,7 @@ fn record(harness: &mut EditorHarness) -> bool {
     !harness.scene().animation.keys.is_empty()
 }
 
-/// Plays a second.
+/// Plays for a second.
 fn play(harness: &mut EditorHarness) {
     tap(harness, Key::G, Modifiers::NONE);
     (0..60).for_each(|_| harness.window.step());
@@ -79,9 +79,9 @@ fn play(harness: &mut EditorHarness) {
     harness.settle();
 }
 
-/// Opens the window of exports.
+/// Opens the export window.
 fn show_exports(harness: &mut EditorHarness) {
-    // The key also closes the window that the monkey may have left open.
+    // The shortcut would close a window that the monkey has left open.
     let is_open = {
         let mut buttons = harness.window.query_all_by_label("Start export");
         buttons.next().is_some()
@@ -91,7 +91,7 @@ fn show_exports(harness: &mut EditorHarness) {
     }
 }
 
-/// Waits for the exports, those that the monkey has paused too.
+/// Waits for the exports, including those that the monkey has paused.
 fn end_exports(harness: &mut EditorHarness) {
     if harness.window.state().is_exporting() {
         show_exports(harness);
@@ -102,7 +102,7 @@ fn end_exports(harness: &mut EditorHarness) {
     });
 }
 
-/// Exports three small frames. Whether they are there.
+/// Exports three small frames. Returns whether they exist.
 fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
     show_exports(harness);
     harness.type_name("folder", folder.to_str().expect("plain"));
@@ -118,7 +118,7 @@ fn export(harness: &mut EditorHarness, folder: &Path) -> bool {
     std::fs::remove_dir_all(folder).is_ok() && count > 3
 }
 
-/// Files to open: small ones of the examples, in the folder.
+/// Files to open: copies of small example scenes in the folder.
 fn pool(folder: &Path) -> Vec<PathBuf> {
     let copied = files_in("scenes").into_iter().filter_map(|path| {
         let text = std::fs::read(&path).expect("readable");
@@ -131,7 +131,7 @@ fn pool(folder: &Path) -> Vec<PathBuf> {
     copied.collect()
 }
 
-/// Writes the document to a file. What is read there, as text.
+/// Writes the document to a file, reads it back, and returns it as text.
 fn keep(harness: &EditorHarness, path: &Path) -> String {
     std::fs::write(path, harness.editor().to_text().expect("a text")).expect("written");
     let read = Document::load(path).expect("what was written");
@@ -157,9 +157,9 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
     let (mut recorded, mut exported, mut taken) = (0, 0, Vec::new());
     let rounds = events.div_ceil(ROUND).max(2 * WARM);
     for round in 0..rounds {
-        // What the monkey did: the window lives, and what it holds can be written and read.
+        // After the random input, the window still works, and its document can be written and read.
         monkey.play(&mut harness, ROUND);
-        // While a dialog is open, nothing else is opened.
+        // While a dialog is open, nothing else can be opened.
         dialogs.close(&mut harness);
         press(&mut harness, "Cancel");
         end_exports(&mut harness);
@@ -170,7 +170,7 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
             "round {round}: {text}"
         );
 
-        // What somebody else does, on a scene that is as it was.
+        // Then deliberate actions, starting with a fresh scene.
         let next = monkey.random.below(pool.len());
         drop_file(&mut harness, &pool[next]);
         taken.extend(memory());
@@ -184,7 +184,7 @@ fn a_long_day_of_a_monkey_leaves_everything_in_order() {
         drop_file(&mut harness, &path);
         assert_eq!(harness.editor().path(), Some(&*path), "round {round}");
     }
-    // Not every one: what the monkey has typed into the orders of exports stays there.
+    // Not in all rounds: text that the monkey typed into the export settings remains there.
     assert!(recorded * 8 > rounds, "{recorded} of {rounds} recordings");
     assert!(exported * 8 > rounds, "{exported} of {rounds} exports");
     let largest = |taken: &[f64]| taken.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Hands in the picture: clicks, handles, and the camera.
+//! Mouse tools in the picture: clicks, handles, and the camera.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -11,7 +11,7 @@ use crate::harness::{CTRL, EditorHarness, radius};
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const NONE: Modifiers = Modifiers::NONE;
 
-/// Where a point of the scene is on the screen.
+/// Screen position of a point of the scene.
 pub fn place(harness: &EditorHarness, point: DVec3) -> Pos2 {
     let view = harness.view();
     let framing = harness.scene().camera.framing().expect("a basis");
@@ -42,7 +42,7 @@ pub fn hover(harness: &mut EditorHarness, at: Pos2) {
 }
 
 pub fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
-    // Two clicks are not to be one double-click.
+    // Two clicks must not be taken for a double click.
     (0..60).for_each(|_| harness.window.step());
     hover(harness, at);
     button(harness, at, PointerButton::Primary, true, modifiers);
@@ -51,7 +51,7 @@ pub fn click(harness: &mut EditorHarness, at: Pos2, modifiers: Modifiers) {
     harness.settle();
 }
 
-/// Presses at one place and moves to another, in steps.
+/// Presses at one position and moves to another in steps.
 pub fn pull(
     harness: &mut EditorHarness,
     from: Pos2,
@@ -112,7 +112,7 @@ fn a_click_selects_what_is_seen_there() {
 #[test]
 fn alt_click_selects_what_is_behind() {
     let mut harness = EditorHarness::new();
-    // Sphere 2 stands before Sphere 1, and the floor behind both.
+    // Sphere 2 is in front of Sphere 1, and the floor is behind both.
     let [front, back] = [1, 0].map(|object| place(&harness, center(harness.scene(), object)));
     let at = front + (back - front) * 0.41;
     for expected in ["Sphere 1", "Plane", "Sphere 2", "Sphere 1"] {
@@ -182,7 +182,7 @@ fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
     let unit = harness.view().height();
     let camera = &harness.scene().camera;
     let depth = (before - camera.position).dot(camera.look_at.normalize());
-    // Half way along the arrow of 76 points.
+    // Half way along the arrow, which is 76 points long.
     let length = depth / camera.projection_distance / f64::from(unit) * 76.0;
     let from = place(&harness, before + DVec3::Y * length * 0.6);
     let to = place(&harness, before + DVec3::Y * (length * 0.6 + 30.0)) + vec2(9.0, 0.0);
@@ -207,7 +207,7 @@ fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
     assert_eq!(center(harness.scene(), 0) - before, DVec3::Y * 12.5);
     harness.press(CTRL, Key::Z);
 
-    // Half of the world writes a comma; what is no number moves nothing, and does not end the drag.
+    // A decimal comma is accepted; text that is no number moves nothing and does not end the drag.
     pull(&mut harness, from, to, PointerButton::Primary, NONE);
     harness.window.event(Event::Text("-".to_owned()));
     harness.window.step();
@@ -256,7 +256,7 @@ fn the_rim_of_a_ball_is_its_radius_and_corners_are_moved_one_by_one() {
     let middle = center(harness.scene(), 0);
     let camera = &harness.scene().camera;
     let basis = camera.basis().expect("a basis");
-    // To the left, where no arrow is.
+    // To the left, where there is no arrow.
     let side = (basis.x_axis * -1.0 + basis.y_axis * -0.5).normalize();
     let arm = middle - camera.position;
     let side = (side - arm * (side.dot(arm) / arm.length_squared())).normalize();
@@ -370,7 +370,7 @@ fn groups_come_whole_into_frames_and_go_whole_again() {
     let both = ball.toggled_at(&scene, triangles[1]);
     assert_eq!(both.items().len(), triangles.len() + 1);
     assert_eq!(both.toggled_at(&scene, triangles[2]), ball);
-    // By itself, a group is open.
+    // Toggling a member of a group that is selected alone removes only that member.
     let without = group.toggled_at(&scene, triangles[2]);
     assert_eq!(without.items().len(), triangles.len() - 1);
 }
@@ -467,7 +467,7 @@ fn what_is_pasted_by_its_name_is_pasted() {
     harness.settle();
     harness.window.key_press(Key::Enter);
     harness.window.step();
-    // The text comes as soon as it is asked for.
+    // The clipboard answers as soon as it is asked.
     let text = r#"Object(name: "New", color_pack: "plane", shape: Sphere(center: (120, 90, -80), radius: 9))"#;
     harness.window.event(Event::Paste(text.to_owned()));
     harness.settle();
@@ -482,7 +482,7 @@ fn text_is_pasted_and_what_is_none_is_refused() {
     harness.settle();
     assert_eq!(harness.selected(), ["New"]);
     assert_eq!(radius(harness.scene(), 9), 9.0);
-    // With a word about it before it, and a mesh that is not there.
+    // With a comment in front, and with a mesh whose file is missing.
     let text = r#"// mine
 Object(name: "Gone", color_pack: "plane", shape: Mesh(file: "gone.ply"))"#;
     harness.window.event(Event::Paste(text.to_owned()));
@@ -515,7 +515,7 @@ fn the_head_of_an_arrow_comes_before_a_ring_through_it() {
     let Shape::Sphere(ball) = &mut scene.objects[0].shape else {
         panic!("a ball");
     };
-    // As large as the arrow is long: the rim runs through its head.
+    // As large as the arrow is long, so that its contour passes through the arrow's head.
     ball.radius = 76.0 / f64::from(at.y - above.y);
     let tip = place(&harness, middle + DVec3::Y * ball.radius);
     harness = EditorHarness::on(scene.clone());
@@ -560,7 +560,7 @@ fn everything_is_found_by_its_name() {
             .query_by_label_contains("Enter does what")
             .is_none()
     );
-    // First what is possible: nothing is in a group yet.
+    // What is possible comes first: nothing is in a group yet.
     harness.click("Sphere 1");
     harness.press(CTRL, Key::K);
     harness.window.event(Event::Text("group".to_owned()));
@@ -568,7 +568,7 @@ fn everything_is_found_by_its_name() {
     harness.press(NONE, Key::Enter);
     assert_eq!(harness.scene().objects[0].group, "Group 1");
     harness.press(CTRL, Key::Z);
-    // Groups, too; what is one already does not become another.
+    // The same for groups; a group is not grouped again.
     harness.click("Triangle 2");
     let other = harness.window.get_by_label("Triangle 4");
     other.click_modifiers(CTRL);
@@ -582,7 +582,7 @@ fn everything_is_found_by_its_name() {
     harness.settle();
     harness.press(NONE, Key::Enter);
     assert_eq!(harness.selected(), ["Triangle 2", "Triangle 4"]);
-    // Also what people call it.
+    // Synonyms are found, too.
     for (word, name) in [("add ball", "Sphere 3"), ("cube", "Box 1")] {
         harness.press(CTRL, Key::K);
         harness.window.event(Event::Text(word.to_owned()));
@@ -610,7 +610,7 @@ fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
         let term = harness.window.query_by_label("ambient intensity · ambient");
         term.is_some()
     });
-    // It is about the scene as it is.
+    // The explanation follows the scene.
     let told = |harness: &EditorHarness| {
         let node = harness.window.get_by_label_contains("wears sphere 1, ");
         node.accesskit_node().value()

@@ -1,4 +1,4 @@
-//! The picture: modes, projections, flying.
+//! The viewport: modes, projections, flying.
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
@@ -62,7 +62,7 @@ fn keys_switch_projection_markers_and_resolution() {
     );
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.editor().mode, Mode::Live);
-    // Typed in passing, a digit or a letter says what it has done.
+    // When a digit or letter is typed accidentally, a message says what it did.
     harness.press(Modifiers::NONE, Key::Num0);
     harness
         .window
@@ -167,13 +167,13 @@ fn escape_takes_a_look_around_back() {
     harness.window.key_press(Key::Escape);
     harness.window.step();
     assert_eq!(harness.editor().shown().camera, start.camera);
-    // The button is still down, and means nothing any more.
+    // Releasing the button afterwards has no effect.
     hover(&mut harness, to + egui::vec2(40.0, 0.0));
     drop_at(&mut harness, to, button, Modifiers::NONE);
     assert_eq!(harness.scene(), &start);
     assert_eq!(harness.editor().undo_label(), None);
     assert!(!harness.sees("Esc once more"));
-    // The next drag looks around again.
+    // The next drag rotates the view again.
     pull(&mut harness, middle, to, button, Modifiers::NONE);
     drop_at(&mut harness, to, button, Modifiers::NONE);
     assert_ne!(harness.scene(), &start);
@@ -207,7 +207,7 @@ fn ctrl_flies_down_and_is_no_shortcut_in_flight() {
     let start = harness.scene().camera.position;
     let frames =
         |harness: &mut EditorHarness, count| (0..count).for_each(|_| harness.window.step());
-    // As a desktop tells it: the key, and what it changes.
+    // As the desktop reports it: the key, and the changed modifiers.
     let ctrl = |harness: &mut EditorHarness, is_down: bool| {
         harness.window.event(Event::Key {
             key: Key::ControlLeft,
@@ -307,7 +307,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
             source: egui::MouseWheelSource::Wheel,
             modifiers: Modifiers::NONE,
         });
-        // Longer than one notch.
+        // Longer than one notch takes.
         (0..10).for_each(|_| harness.window.step());
         harness.settle();
     };
@@ -315,7 +315,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     harness.window.get_by_label("Leave High-res picture 1:1");
     turn(&mut harness, 1.0);
     harness.window.get_by_label("Leave High-res picture 2:1");
-    // Another picture is seen as a whole.
+    // Another picture is shown as a whole.
     harness.press(Modifiers::NONE, Key::Escape);
     harness.press(Modifiers::NONE, Key::H);
     harness.picture();
@@ -337,7 +337,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     let part = harness.picture();
     let traced = part.pixels.iter().filter(|pixel| pixel[3] == 255).count();
     assert!((4_000..40_000).contains(&traced), "{traced}");
-    // First all of it, then the live view.
+    // Escape leads to the whole picture first, and only then to the live view.
     harness.press(Modifiers::NONE, Key::Escape);
     let whole = harness.picture();
     let same = part.pixels.iter().zip(&whole.pixels);
