@@ -26,7 +26,7 @@ pub struct PointLight<R> {
     /// For each mesh of the geometry, the faces that shadow rays skip, if any are known: those that contain the
     /// light, or whose shadow is also cast by other faces.
     pub culled_faces: Vec<Option<Arc<CulledFaces>>>,
-    /// Numbers of the listed primitives whose surface contains the light. Shadow rays do not test them.
+    /// Numbers of the listed primitives whose plane or surface contains the light. Shadow rays do not test them.
     pub holders: Vec<usize>,
     /// The ball among them, if there is one.
     pub ball: HoldingBall<R>,
@@ -93,7 +93,7 @@ pub fn pack_lights<R: Real>(
     ),
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
-    // Which faces of a mesh have planes that contain a light is unknown.
+    // Whether a light is in the plane of any face of a mesh is unknown.
     let has_meshes = scene.faces() > 0 && !all;
     let lights = scene.lights.iter().enumerate();
     let shining = lights.filter(|(_, light)| light.visible && (all || light.intensity > 0.0));

@@ -11,8 +11,7 @@ use super::tips::tips;
 use crate::primitive::{PackedTriangle, Tip};
 use crate::simd::Vec3;
 
-/// Of the faces in a node, every one whose index is a multiple of this is measured for all, and also any facing
-/// elsewhere.
+/// Of the faces in a node, one in this many is measured for all of them, and also each that faces in a new direction.
 const MEASURED: usize = 8;
 /// Cosine between the normals of two faces above which they face the same way.
 const ALIKE: f64 = 0.7;

@@ -71,7 +71,7 @@ pub struct PackedTriangle<R> {
     /// Whether it shares a corner with another triangle. At the seam, its neighbours then shadow it unless
     /// secondary rays start a few roundings above the surface.
     pub in_mesh: bool,
-    /// Its smallest altitude.
+    /// Its smallest altitude, or the thickness of the mesh there if that is known and greater.
     pub thickness: R,
     /// Where it may slip between samples.
     pub tip: Tip,

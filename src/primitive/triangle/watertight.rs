@@ -198,7 +198,7 @@ pub fn edges_of<L: SimdFloat>(
     shear: &Shear<L>,
     triangle: &PackedTriangle<L::Real>,
 ) -> ([[L; 3]; 3], [L; 3]) {
-    // Written out, since a closure called by the standard library is not compiled for the lanes.
+    // Written out, since a closure called by the standard library is not compiled with the lanes' instruction set.
     let [a, b, c] = triangle.corners;
     let a = shear.apply(ray.origin.like(a) - ray.origin);
     let b = shear.apply(ray.origin.like(b) - ray.origin);
