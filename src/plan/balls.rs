@@ -1,9 +1,9 @@
-//! Balls around what a ray can meet, laid out so that several are tested in step.
+//! Bounding balls of what a ray can hit, laid out so that several are tested at once.
 
 use crate::primitive::{Ball, Kind, Primitive, Primitives, Visit};
 use crate::simd::{MAX_LANES, Real};
 
-/// Balls, component by component, filled up to whole packets with balls that nothing meets.
+/// Balls as one array per component, padded to whole packets with balls that nothing hits.
 #[derive(Clone, Debug, Default)]
 pub struct Balls<R> {
     /// x of the centres.
@@ -12,12 +12,12 @@ pub struct Balls<R> {
     pub y: Vec<R>,
     /// z of the centres.
     pub z: Vec<R>,
-    /// Minus infinity in a ball that nothing meets.
+    /// Radii; minus infinity for padding.
     pub radius: Vec<R>,
 }
 
 impl<R: Real> Balls<R> {
-    /// These balls, in their order.
+    /// Stores these balls in their order.
     pub fn new<'a>(balls: impl Iterator<Item = &'a Ball>) -> Self {
         let mut all = Self::default();
         for ball in balls {
@@ -37,7 +37,7 @@ impl<R: Real> Balls<R> {
     }
 }
 
-/// The balls around all primitives that end, with their numbers.
+/// The bounding balls of all bounded primitives, with their numbers.
 pub fn balls_of<R: Real>(primitives: &Primitives<R>) -> Vec<(u32, Ball)> {
     let mut balls = BallsOf(Vec::new());
     primitives.visit(&mut balls);

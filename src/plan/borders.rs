@@ -1,28 +1,28 @@
-//! Where faces hang together, and where they end: known from the numbers of their corners.
+//! Connectivity and borders of faces, derived from their corner numbers.
 
 use rayon::slice::ParallelSliceMut as _;
 
 use super::components::components_along_edges;
 use crate::simd::Vec3;
 
-/// Most faces on the way from one border of a mesh to the other.
+/// Maximum number of faces on the way from one border of a mesh to the other.
 const LONGEST_WALK: usize = 32;
 
-/// What the edges of faces tell of them.
+/// The connectivity of faces along their edges.
 pub struct Borders {
-    /// Faces with an edge that no other face has, in ascending order, and how far it is from there over the surface to
-    /// the next such edge; infinity if that is far.
+    /// Faces on a border (with an edge that no other face has), in ascending order, with the distance over the
+    /// surface to the next border; infinity if that is far.
     pub widths: Vec<(u32, f64)>,
-    /// Whether every edge is passed once in each direction: there is an inside.
+    /// Whether every edge is traversed once in each direction, so that there is an inside.
     pub is_closed: bool,
-    /// For each face the part that it is connected with along edges.
+    /// For each face, its component when connected along edges.
     pub connected: Vec<u32>,
-    /// The same for parts that are of one material, if there are several materials.
+    /// The same for components of one material, if there are several materials.
     pub of_one_material: Option<Vec<u32>>,
 }
 
 impl Borders {
-    /// Those of faces whose corners have these numbers, are there, and that are of these materials.
+    /// Analyses faces with these corner numbers, corner positions and materials.
     pub fn of(
         points: &[[u32; 3]],
         corners: impl Fn(u32) -> [Vec3<f64>; 3],
@@ -48,15 +48,15 @@ impl Borders {
     }
 }
 
-/// An edge, from the smaller number to the larger, and a face that has it, twice its number, and 1 if the
-/// face passes it that way.
+/// An edge, as its smaller and its larger corner number, and a face that has it: twice the face's number, plus 1 if
+/// the face traverses the edge from the smaller to the larger.
 type Edge = (u32, u32, u32);
 
 /// All edges, sorted.
 struct Edges(Vec<Edge>);
 
 impl Edges {
-    /// Those of faces whose corners have these numbers.
+    /// The edges of faces with these corner numbers.
     fn of(points: &[[u32; 3]]) -> Self {
         let mut edges: Vec<Edge> = Vec::with_capacity(points.len() * 3);
         for (face, &[a, b, c]) in (0..).zip(points) {
@@ -68,12 +68,12 @@ impl Edges {
         Self(edges)
     }
 
-    /// Those that are one edge, together.
+    /// Groups of entries that are the same edge.
     fn each(&self) -> impl Iterator<Item = &[Edge]> {
         self.0.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
     }
 
-    /// Faces with an edge that no other face has.
+    /// The faces with an edge that no other face has.
     fn alone(&self) -> Vec<u32> {
         let alone = self.each().filter(|edge| edge.len() == 1);
         let mut faces: Vec<u32> = alone.map(|edge| edge[0].2 / 2).collect();
@@ -82,14 +82,14 @@ impl Edges {
         faces
     }
 
-    /// Pairs of faces that have an edge in common: enough of them to connect all that do.
+    /// Pairs of faces that share an edge: enough of them to connect all faces that do.
     fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
         let neighbours = self.0.windows(2);
         let pairs = neighbours.filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
         pairs.map(|pair| [pair[0].2 / 2, pair[1].2 / 2])
     }
 
-    /// Whether two faces meet at every edge and pass it in different directions.
+    /// Returns whether exactly two faces meet at every edge and traverse it in opposite directions.
     fn are_closed(&self) -> bool {
         self.each()
             .all(|edge| matches!(edge, [one, two] if (one.2 ^ two.2) & 1 == 1))
@@ -110,7 +110,7 @@ impl Edges {
     }
 }
 
-/// Faces that straight lines are drawn over.
+/// A surface over which straight lines are traced.
 struct Surface<'a, F> {
     points: &'a [[u32; 3]],
     corners: F,
@@ -118,7 +118,7 @@ struct Surface<'a, F> {
 }
 
 impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
-    /// The way along the surface from the border of a face to the next one; infinity if that is far.
+    /// The distance along the surface from the border edge of a face to the next border; infinity if that is far.
     fn width(&self, face: u32) -> f64 {
         let mut least = f64::INFINITY;
         for side in 0..3 {
@@ -131,7 +131,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
         least
     }
 
-    /// The length of the straight line over the surface that sets out across the middle of a side.
+    /// The length of the straight line over the surface that starts perpendicularly across the middle of a side.
     fn walk(&self, mut face: u32, side: usize) -> f64 {
         let mut entered = side;
         let corners = (self.corners)(face);
@@ -141,7 +141,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
         let mut length = 0.0;
         for _ in 0..LONGEST_WALK {
             let corners = (self.corners)(face);
-            // Each of the other sides is crossed where the line comes to its height over it.
+            // The line crosses a side where its height above that side becomes zero.
             let crossing = |side: usize| {
                 let inwards = inwards(&corners, side);
                 let (height, speed) = ((at - corners[side]).dot(inwards), direction.dot(inwards));
@@ -158,7 +158,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
             } else {
                 (sides[1], two)
             };
-            // Neither infinity nor not-a-number.
+            // Infinite or NaN.
             if !step.is_finite() {
                 return f64::INFINITY;
             }
@@ -169,7 +169,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
             let Some(next) = self.edges.other(a, b, face) else {
                 return length;
             };
-            // Over the edge: what goes along it stays, what goes across it goes on across.
+            // Across the edge: the component along it is kept, the one across it goes on into the next face.
             let along = (corners[(left + 1) % 3] - corners[left]).try_normalize();
             let Some(along) = along else { return length };
             let across = -direction.dot(inwards(&corners, left));
@@ -190,7 +190,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
     }
 }
 
-/// The unit direction in the plane of a triangle that leads from one of its sides into it.
+/// The unit vector in the plane of a triangle that points from one of its sides inwards.
 fn inwards(corners: &[Vec3<f64>; 3], side: usize) -> Vec3<f64> {
     let (from, to) = (corners[side], corners[(side + 1) % 3]);
     let third = corners[(side + 2) % 3];

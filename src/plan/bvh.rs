@@ -1,7 +1,6 @@
-//! Boxes within boxes, sixteen in each: the way down to what a ray can meet among many things.
+//! A bounding volume hierarchy with sixteen boxes per node, for scenes of many things.
 //!
-//! A packet of rays is held against all boxes of a node in step, so that a node is as wide as the widest
-//! packet.
+//! All boxes of a node are tested in step against a packet of rays, so a node is as wide as the widest packet.
 
 use std::sync::Arc;
 
@@ -13,51 +12,51 @@ use super::grouping::{Held, grouped};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, Vec3};
 
-/// A node: up to [`GROUP`] boxes, component by component, each of which is one line of the processor's cache. Single
-/// precision is enough to hold what is in them: a million faces in double precision take 40 MB less, and each way down
-/// half of the memory.
+/// A node: up to [`GROUP`] boxes, one array per component, each of which fills a cache line. Single precision is
+/// enough for boxes: for a million faces it takes 40 MB less than double precision, and each traversal reads half
+/// of the memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Node {
-    /// The lowest x of each box, y, z; then the highest: rounded outwards.
+    /// The low x, y and z of each box, then the high ones: rounded outwards.
     pub planes: [[[f32; GROUP]; 3]; 2],
-    /// What the boxes hold: the numbers of members, and of nodes with this bit: [`IS_NODE`].
+    /// The content of each box: the number of a member, or that of a node with the bit [`IS_NODE`] set.
     children: [u32; GROUP],
-    /// The smallest thickness of what is in each box, see [`crate::primitive::Primitive::thickness`]; rounded down.
+    /// The smallest thickness in each box, see [`crate::primitive::Primitive::thickness`]; rounded down.
     pub thickness: [f32; GROUP],
-    /// How many boxes there are.
+    /// The number of boxes.
     pub count: usize,
 }
 
-/// How many times as large as when it was built the surfaces of a tree may become before it is built anew.
+/// Factor by which the surface area of a refitted tree may grow before the tree is built anew.
 const WORN: f64 = 1.2;
-/// Tells nodes from members.
+/// The bit that distinguishes nodes from members.
 const IS_NODE: u32 = 1 << 31;
 
-/// What is to be found in a tree.
+/// An entry of a tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<R> {
-    /// The box around it.
+    /// Its bounding box.
     pub bounds: BoundingBox<R>,
-    /// Its smallest measure.
+    /// Its thickness.
     pub thickness: R,
 }
 
-/// A bounding volume hierarchy, the root first; no nodes where there are no members.
+/// A bounding volume hierarchy with its root first; it has no nodes if there are no members.
 #[derive(Clone, Debug)]
 pub struct Bvh<R> {
-    /// The nodes, each before those in its boxes; trees of both precisions may share them.
+    /// The nodes, each before its child nodes; trees of both precisions may share them.
     pub nodes: Arc<[Node]>,
-    /// The box around everything.
+    /// The box around all members.
     pub bounds: BoundingBox<R>,
     /// The smallest thickness of any member.
     pub thinnest: R,
-    /// The surfaces of all boxes when the tree was built, added up.
+    /// Half of the total surface area of all boxes when the tree was built.
     built: f64,
 }
 
 impl Node {
-    /// No boxes.
+    /// A node without boxes.
     pub fn empty() -> Self {
         Self {
             planes: [[[f32::INFINITY; GROUP]; 3], [[-f32::INFINITY; GROUP]; 3]],
@@ -67,7 +66,7 @@ impl Node {
         }
     }
 
-    /// A bit for each box.
+    /// A mask with a bit set for each box.
     pub fn filled(&self) -> u64 {
         (1 << self.count) - 1
     }
@@ -85,7 +84,7 @@ impl Node {
         }
     }
 
-    /// What the box at `index` holds.
+    /// The content of the box at `index`.
     #[inline(always)]
     pub fn child(&self, index: usize) -> Child {
         let held = self.children[index];
@@ -96,13 +95,13 @@ impl Node {
         }
     }
 
-    /// The members among what it holds.
+    /// The members in the node's own boxes.
     pub fn members(&self) -> impl Iterator<Item = u32> {
         let held = self.children[..self.count].iter().copied();
         held.filter(|held| held & IS_NODE == 0)
     }
 
-    /// Takes over a box of another node, behind its own, of which there are fewer than [`GROUP`].
+    /// Appends a box of another node; there must be fewer than [`GROUP`].
     #[inline(always)]
     pub fn take(&mut self, from: &Self, index: usize) {
         for (planes, others) in self.planes.iter_mut().zip(&from.planes) {
@@ -115,7 +114,7 @@ impl Node {
         self.count += 1;
     }
 
-    /// Takes a box out; the last one comes into its place.
+    /// Removes a box; the last one takes its place.
     #[inline(always)]
     pub fn remove(&mut self, index: usize) {
         let last = self.count - 1;
@@ -139,7 +138,7 @@ impl Node {
         self.thickness[index] = below(member.thickness);
     }
 
-    /// The box at `index` as if it were a member.
+    /// The box at `index` as a member.
     fn get<R: Real>(&self, index: usize) -> Member<R> {
         Member {
             bounds: self.bounds(index),
@@ -147,7 +146,7 @@ impl Node {
         }
     }
 
-    /// All boxes together.
+    /// The union of all boxes.
     fn around<R: Real>(&self) -> Member<R> {
         (0..self.count).fold(Member::nothing(), |around, index| {
             around.and(&self.get(index))
@@ -172,9 +171,10 @@ impl<R: Real> Member<R> {
 }
 
 impl<R: Real> Bvh<R> {
-    /// A tree of so many members, each given by its number: a million of them would take much room twice.
+    /// Builds a tree over `count` members. They are queried by number instead of stored, since a million of them
+    /// would take much memory twice.
     pub fn new(count: usize, member: impl Fn(usize) -> Member<R>) -> Self {
-        // Single precision is enough to decide what goes with what.
+        // Single precision is enough to decide the grouping.
         let point = |v: Vec3<R>| Vec3A::from(v.to_dvec3().as_vec3());
         let bounds = (0..count).map(|number| member(number).bounds);
         let boxes = bounds.map(|bounds| Aabb::new(point(bounds.low), point(bounds.high)));
@@ -202,7 +202,7 @@ impl<R: Real> Bvh<R> {
         bvh
     }
 
-    /// The same tree around members that have moved; `None` if its boxes have become so large that a new one is
+    /// Returns the same tree refitted to moved members; `None` if its boxes have grown so large that a new tree is
     /// better.
     pub fn refitted(&self, member: impl Fn(usize) -> Member<R>) -> Option<Self> {
         let mut bvh = self.clone();
@@ -210,7 +210,8 @@ impl<R: Real> Bvh<R> {
         (bvh.surface() <= self.built * WORN).then_some(bvh)
     }
 
-    /// Half of the surfaces of all boxes, added up: what a ray meets at random.
+    /// Half of the total surface area of all boxes, to which the number of boxes that a random ray hits is
+    /// proportional.
     fn surface(&self) -> f64 {
         let half_surface = |bounds: BoundingBox<R>| {
             let size = (bounds.high - bounds.low).to_dvec3();
@@ -221,7 +222,7 @@ impl<R: Real> Bvh<R> {
         boxes.map(half_surface).sum()
     }
 
-    /// Numbers the members anew, so that those of a node follow each other. The old numbers, in the new order.
+    /// Renumbers the members so that those of a node are consecutive. Returns the old numbers in the new order.
     pub fn renumber(&mut self) -> Vec<u32> {
         let mut old = Vec::new();
         for node in Arc::make_mut(&mut self.nodes) {
@@ -234,10 +235,10 @@ impl<R: Real> Bvh<R> {
         old
     }
 
-    /// Fits the boxes to the members, which have moved.
+    /// Fits the boxes to members that have moved.
     pub fn refit(&mut self, member: impl Fn(usize) -> Member<R>) {
         let nodes = Arc::make_mut(&mut self.nodes);
-        // A node stands before those in its boxes.
+        // A node comes before its child nodes.
         for index in (0..nodes.len()).rev() {
             for place in 0..nodes[index].count {
                 let held = match nodes[index].child(place) {
@@ -251,8 +252,8 @@ impl<R: Real> Bvh<R> {
         (self.bounds, self.thinnest) = (all.bounds, all.thickness);
     }
 
-    /// The same tree in another precision, around the same members rounded to it: what lies in a box of single precision
-    /// does so when it is rounded.
+    /// Returns the same tree in another precision, around the same members rounded to it: a member inside a box of
+    /// single precision stays inside when it is rounded.
     pub fn in_precision<S: Real>(&self) -> Bvh<S> {
         let BoundingBox { low, high } = self.bounds;
         Bvh {
@@ -274,7 +275,7 @@ impl<R: Real> Bvh<R> {
     }
 }
 
-/// The largest number in single precision that is not above another one.
+/// The largest single-precision number that is not above `number`.
 fn below<R: Real>(number: R) -> f32 {
     let number = number.to_f64();
     let nearest = number as f32;
@@ -325,7 +326,7 @@ mod tests {
         }
     }
 
-    /// Boxes in single precision are no larger than that asks for.
+    /// Returns whether a box is no larger than rounding to single precision requires.
     fn is_near(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
         let off = (outer.low - inner.low)
             .max_abs()
@@ -333,7 +334,7 @@ mod tests {
         off <= 100.0 * f64::from(f32::EPSILON)
     }
 
-    /// Every member is held once, and by all boxes above it.
+    /// Returns whether every member is held once, and contained in all boxes above it.
     fn is_whole(bvh: &Bvh<f64>, members: &[Member<f64>]) -> bool {
         let mut found = vec![0; members.len()];
         let mut waiting: Vec<(u32, BoundingBox<f64>, usize)> = vec![(0, bvh.bounds, 1)];
@@ -393,7 +394,7 @@ mod tests {
     fn a_thousand_members_in_one_place_are_found() {
         let members = vec![member((DVec3::ONE, 1.0)); 1000];
         assert!(is_whole(&tree(&members), &members));
-        // Each around the one before it: a chain of pairs.
+        // Each box contains the previous one: a chain of pairs.
         let nested: Vec<_> = (0..2000)
             .map(|at| member((DVec3::ZERO, f64::from(at))))
             .collect();

@@ -1,11 +1,11 @@
-//! Single rays through the tree of a mesh: how far the other side is, and whether a point is outside.
+//! Single rays through the tree of a mesh: the distance to the opposite side, and whether a point is outside.
 
 use super::bvh::{Bvh, Child, GROUP};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
-/// Tells of the triangles that a ray meets, in any order, and how far each is; what is told says how far is still
-/// looked. Whether so many nodes were enough for all of them.
+/// Calls `tell` with each triangle that a ray hits and its distance, in any order; it returns the distance up to
+/// which the search goes on. Returns whether visiting `most` nodes was enough to find all hits.
 pub fn cast<R: Real>(
     triangles: &[PackedTriangle<R>],
     bvh: &Bvh<R>,
@@ -26,7 +26,7 @@ pub fn cast<R: Real>(
         left -= 1;
         let (near, far) = slabs(&node.planes, origin.to_array(), inverse);
         for place in 0..node.count {
-            // Not-a-number is in neither range: such a box is looked into.
+            // NaN satisfies no comparison: such a box is entered.
             if near[place] > far[place] || near[place] > reach || far[place] < R::ZERO {
                 continue;
             }
@@ -44,11 +44,11 @@ pub fn cast<R: Real>(
     true
 }
 
-/// Two directions: any will do; along none of the axes, edges are rarely met.
+/// Two arbitrary directions; along none of the axes, so that they rarely hit edges.
 const WAYS_OUT: [[f64; 3]; 2] = [[0.312, 0.871, 0.379], [-0.523, 0.233, -0.817]];
 
-/// Whether a point is outside of a closed mesh whose faces look outwards: what is met first on the way out is met
-/// from its front, and as much is left as is entered. A mesh may have parts inside of others.
+/// Returns whether a point is outside of a closed mesh whose normals point outwards: a ray from it hits a front
+/// face first, and leaves the mesh as often as it enters it. A mesh may have components inside of others.
 pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point: Vec3<R>) -> bool {
     WAYS_OUT.iter().all(|way| {
         let direction = Vec3::from(way.map(R::from_f64));
@@ -67,7 +67,7 @@ pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point:
     })
 }
 
-/// Where a ray enters and leaves the boxes of a node.
+/// The distances at which a ray enters and leaves the boxes of a node.
 fn slabs<R: Real>(
     planes: &[[[f32; GROUP]; 3]; 2],
     origin: [R; 3],
@@ -86,8 +86,8 @@ fn slabs<R: Real>(
     (near, far)
 }
 
-/// Where a ray meets a triangle from within; infinity if it does not. Möller and Trumbore's formula: a ray
-/// that slips through an edge is one of many.
+/// The distance at which a ray hits a triangle, from either side; infinity if it does not. Möller and Trumbore's
+/// formula: a ray that slips through an edge is one of many.
 fn meet<R: Real>([a, b, c]: &[Vec3<R>; 3], origin: Vec3<R>, direction: Vec3<R>) -> R {
     let (ab, ac) = (*b - *a, *c - *a);
     let across = direction.cross(ac);
@@ -115,7 +115,8 @@ mod tests {
         Vec3::new(x, y, z)
     }
 
-    /// A box around the origin, so large; clockwise seen from outside, or from inside.
+    /// A box with this half width around a point on the y axis; clockwise seen from outside, or from inside if
+    /// hollow.
     fn solid(half: f64, at_y: f64, is_hollow: bool) -> Vec<[Vec3<f64>; 3]> {
         let corner = |index: usize| {
             let side = |bit: usize| if index >> bit & 1 == 0 { -half } else { half };
@@ -157,7 +158,7 @@ mod tests {
             assert!(!is_seen(&room, point), "{point:?}");
         }
         assert!(is_seen(&room, at(1.0, -30.0, 2.0)));
-        // What is hollow has an outside within.
+        // The inside of a hollow is outside of the mesh.
         let shell = [solid(10.0, 0.0, false), solid(3.0, 4.0, true)];
         assert!(is_seen(&shell, at(0.1, 4.2, 0.3)) && !is_seen(&shell, at(0.1, -3.0, 0.2)));
     }

@@ -1,48 +1,49 @@
-//! What the eye, lights, balls or flat pieces all but touch, where the digits of single precision are lost.
+//! Near contacts of the eye, lights, spheres and flat pieces, where single precision loses too many digits.
 
 use glam::DVec3;
 
 use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape, Triangle};
 
-/// Smallest height of the eye or a light over a sphere, in radii, in single precision: below it, the
-/// distance to the ground right ahead has lost its digits.
+/// Least height of the eye or a light above a sphere for single precision, in radii: below it, the distance to the
+/// ground straight ahead has lost its digits.
 const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
 
-/// Smallest height of the eye over a plane, or of a light over anything flat, as a share of the scene's
-/// extent, in single precision: below it, rounding may put it on the other side.
+/// Least height of the eye above a plane, or of a light above anything flat, for single precision, as a share of
+/// the scene's extent: below it, rounding may put it on the other side.
 const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
-/// The same of the eye over a disc or a triangle, which is narrow where it matters.
+/// The same for the eye above a disc or a triangle, which is narrow where it matters.
 const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
-/// Smallest distance of the eye or a light from the border of a piece, as a share of what ends of a scene, in single
-/// precision where nothing is filtered: rounding turns the line to the border by 1/5000 there. Of random triangles and
-/// discs, some at a third of it are off by up to 28 pixels of 40,000; none at three times as much.
+/// Least distance of the eye or a light from the border of a piece for single precision without filtering, as a
+/// share of the size of the scene's bounded part: rounding then turns the line to the border by 1/5000. Of random
+/// triangles and discs at a third of this distance, some are off by up to 28 pixels of 40,000; at three times as
+/// much, none.
 const MIN_DISTANCE_OF_BORDER: f64 = 3e-4;
-/// Most pairs of an object and a light that are looked at.
+/// Maximum number of pairs of an object and a light that are checked.
 const MOST_PAIRS: usize = 100_000;
 
-/// Most faces of meshes that are held against each light, in all: a millisecond.
+/// Maximum number of faces of meshes that are compared with lights, in all: a millisecond.
 const MOST_FACES: usize = 20_000;
 
-/// Smallest distance of the surfaces of two spheres as a share of the scene's extent in single precision: where
+/// Least distance between the surfaces of two spheres for single precision, as a share of the scene's extent: if
 /// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
 const MIN_GAP_PER_EXTENT: f64 = 3e-4;
-/// The same as a share of their radii, for small ones.
+/// The same as a share of their radii, for small spheres.
 const MIN_GAP_PER_RADIUS: f64 = 1e-2;
-/// Smallest distance of flat pieces as a share of the scene's extent in single precision: from afar, both are at one
-/// distance otherwise, and the first is seen.
+/// Least distance between flat pieces for single precision, as a share of the scene's extent: from afar, both would
+/// be at the same distance, and the first one would be seen.
 const MIN_GAP_OF_PIECES: f64 = 1e-6;
-/// Most pieces that are held against each other.
+/// Maximum number of pieces that are compared with each other.
 const MOST_PIECES: usize = 64;
-/// Most spheres that are held against each other.
+/// Maximum number of spheres that are compared with each other.
 const MOST_SPHERES: usize = 2_000;
 
-/// Whether a point is all but on something round.
+/// Returns whether a point is almost on a curved surface.
 pub fn is_low(shape: &Shape, point: DVec3) -> bool {
     shape.height_per_radius(point) < MIN_HEIGHT_PER_RADIUS
 }
 
-/// Whether the eye is all but on a plane, or a light on anything: on something round, its shadow ends where
-/// rays graze.
+/// Returns whether the eye is almost on a plane, or a light almost on anything: on a curved surface, the light's
+/// shadow ends where rays graze.
 pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     let is_just_above = |piece: &PlanePiece, point: DVec3, least: f64| {
         let height = piece.height(point).abs();
@@ -53,7 +54,7 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     let has_few_faces = scene.faces() * lights().count() <= MOST_FACES;
     let visible = scene.visible_objects();
     let shapes = visible.map(|object| &object.shape);
-    // Without lights only planes count: many objects are not worth a closer look.
+    // Without lights only planes matter; the many other objects are skipped.
     let mut looked_at = shapes.filter(|shape| has_lights || matches!(shape, Shape::Plane(_)));
     looked_at.any(|shape| {
         if let Shape::Mesh(mesh) = shape {
@@ -78,7 +79,7 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     })
 }
 
-/// Whether a point is nearer than this to a face of a mesh, and not in its plane.
+/// Returns whether a point is nearer than `least` to a face of a mesh, and not in its plane.
 fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
     let is_near = |&[a, b, c]: &[DVec3; 3]| {
         let bounds = Shape::from(Triangle { a, b, c }).bounds();
@@ -92,20 +93,20 @@ fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
     })
 }
 
-/// Whether a point is in a box, or no farther beside it than this along any axis.
+/// Returns whether a point is in a box, or at most `least` outside of it along any axis.
 fn is_near_box(point: DVec3, (low, high): (DVec3, DVec3), least: f64) -> bool {
     (low - least).cmple(point).all() && (high + least).cmpge(point).all()
 }
 
-/// The lights that are looked at: all, or none of very many.
+/// The lights to check: all of them, or none if there are very many.
 fn near_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     let pairs = scene.objects.len() * scene.lights.len();
     let are_few = pairs <= MOST_PAIRS;
     scene.visible_lights().filter(move |_| are_few)
 }
 
-/// Whether an eye, if there is one in a place, or a light is all but on the border of something flat of a scene of this
-/// size.
+/// Returns whether the eye, if rays start from a point, or a light is almost on the border of something flat, in a
+/// scene of this size.
 pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
     let least = MIN_DISTANCE_OF_BORDER * size;
     let visible = scene.visible_objects();
@@ -116,7 +117,7 @@ pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
     })
 }
 
-/// Whether two flat pieces are a hair apart. Those that are not apart have an order.
+/// Returns whether two flat pieces are a tiny distance apart. Those that coincide are ordered by ties.
 pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
     let visible = scene.visible_objects();
     let pieces = visible.filter_map(|object| object.shape.plane_piece());
@@ -129,7 +130,7 @@ pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
     })
 }
 
-/// Whether two spheres all but fill the same surface. Those that do fill it are one.
+/// Returns whether two spheres almost fill the same surface. Those that do fill it count as one.
 pub fn has_twins(scene: &Scene, extent: f64) -> bool {
     let visible = scene.visible_objects();
     let spheres = visible.filter_map(|object| match &object.shape {

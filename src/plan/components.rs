@@ -1,5 +1,5 @@
-//! What of triangles hangs together, and which way it looks: they are wound clockwise or counter-clockwise, and not
-//! all parts alike.
+//! Connected components of triangle meshes, and their orientation: triangles are wound clockwise or
+//! counter-clockwise, and components may differ.
 
 use std::collections::HashMap;
 
@@ -8,12 +8,13 @@ use glam::DVec3;
 use crate::primitive::PackedTriangle;
 use crate::simd::Vec3;
 
-/// What a sheet surrounds by rounding alone, in parts of its area to the power of 1.5.
+/// Volume that an open sheet may enclose through rounding alone, relative to its area to the power of 1.5.
 const ROUNDING: f64 = 1e-6;
-/// From so many on, triangles that hang together are seen as one thing: fewer have edges that one looks at.
+/// Number of connected triangles from which they count as one thing; with fewer, the edges between them are visible
+/// as such.
 const MANY: u32 = 64;
 
-/// Six times the volume that the triangles surround; negative where they look inwards.
+/// Returns six times the volume that the triangles enclose; negative if their normals point inwards.
 pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
     triangles
         .iter()
@@ -21,8 +22,8 @@ pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
         .sum()
 }
 
-/// For each face, of which these are the numbers of the corners, the part that it is connected with; parts have numbers
-/// from 0 on.
+/// Returns the component of each face, given the corner numbers of the faces; faces that share a corner are
+/// connected. Components are numbered from 0.
 pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
     let count = points.iter().flatten().max().map_or(0, |&last| last + 1);
     let mut sets = UnionFind::new(count);
@@ -33,8 +34,8 @@ pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
     numbered(points.iter().map(|face| sets.first(face[0])))
 }
 
-/// The same for so many faces, of which these pairs have an edge in common: those that only touch at a corner are parts
-/// of their own.
+/// Returns the component of each of `count` faces, given pairs of faces that share an edge: faces that touch only
+/// at a corner are in different components.
 pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut sets = UnionFind::new(count as u32);
     for [one, other] in pairs {
@@ -43,7 +44,7 @@ pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]
     numbered((0..count as u32).map(|face| sets.first(face)))
 }
 
-/// Numbers from 0 on for what these are, in their order.
+/// Numbers the distinct values from 0, in the order of their first occurrence.
 fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut numbers = HashMap::new();
     let number = |first| {
@@ -53,7 +54,7 @@ fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
     firsts.map(number).collect()
 }
 
-/// For each face the first one of its part; none if there is one part.
+/// Returns the first face of each face's component; empty if there is at most one component.
 pub fn first_of_parts(parts: &[u32]) -> Vec<u32> {
     match &firsts(parts)[..] {
         [] | [_] => Vec::new(),
@@ -61,7 +62,7 @@ pub fn first_of_parts(parts: &[u32]) -> Vec<u32> {
     }
 }
 
-/// The first face of each part, and how many there are.
+/// The first face of each component, and the number of its faces.
 fn firsts(parts: &[u32]) -> Vec<(u32, u32)> {
     let mut firsts = Vec::new();
     for (face, &part) in (0..).zip(parts) {
@@ -73,8 +74,8 @@ fn firsts(parts: &[u32]) -> Vec<(u32, u32)> {
     firsts
 }
 
-/// For each triangle whether it is of a part that looks inwards. Parts with borders are seen from the mean of their
-/// corners: a tube without ends has an inside, too.
+/// Returns for each triangle whether its component faces inwards. The volume of an open component is measured from
+/// the mean of its corners, since a tube without ends has an inside, too.
 pub fn inside_out(triangles: &[PackedTriangle<f64>], parts: &[u32]) -> Vec<bool> {
     let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sums = vec![(DVec3::ZERO, 0.0); count];
@@ -98,8 +99,8 @@ pub fn inside_out(triangles: &[PackedTriangle<f64>], parts: &[u32]) -> Vec<bool>
     parts.iter().map(is_inside_out).collect()
 }
 
-/// For each triangle the first one that it is one thing with, as the faces of a mesh are: those of a part, if they are
-/// many. Empty if that is none.
+/// Returns for each triangle the first triangle of the thing that it is part of, as the faces of a mesh are: of its
+/// component, if that has many triangles. Empty if there is no such component.
 pub fn things(parts: &[u32]) -> Vec<Option<u32>> {
     let found = firsts(parts);
     if found.iter().all(|&(_, count)| count < MANY) {
@@ -116,14 +117,14 @@ fn corners(triangle: &PackedTriangle<f64>) -> [DVec3; 3] {
     triangle.corners.map(Vec3::to_dvec3)
 }
 
-/// Six times the volume of a tetrahedron, clockwise seen from outside, by its tip and its foot.
+/// Six times the volume of a tetrahedron, given by its apex and its base, which is clockwise seen from outside.
 fn volume_from(tip: DVec3, foot: [DVec3; 3]) -> f64 {
     let [a, b, c] = foot.map(|corner| corner - tip);
     a.dot(c.cross(b))
 }
 
-/// What is connected, as a forest: each names one before it, the first of a part itself
-/// (Tarjan, "Efficiency of a good but not linear set union algorithm", J. ACM 22, 1975).
+/// A union-find forest: each element points to an earlier one of its set, the first one to itself (Tarjan,
+/// "Efficiency of a good but not linear set union algorithm", J. ACM 22, 1975).
 struct UnionFind(Vec<u32>);
 
 impl UnionFind {
@@ -136,7 +137,7 @@ impl UnionFind {
         self.0[a.max(b) as usize] = a.min(b);
     }
 
-    /// The first of the part that one is in.
+    /// The first element of the set that contains `point`.
     fn first(&mut self, mut point: u32) -> u32 {
         while self.0[point as usize] != point {
             let before = self.0[self.0[point as usize] as usize];
@@ -153,7 +154,7 @@ mod tests {
     use crate::mesh::icosphere;
     use crate::primitive::number_corners;
 
-    /// A ball of triangles in a place, of a material.
+    /// A ball of triangles with its middle at `x` on the x axis.
     fn ball(x: f64, material: u32) -> Vec<PackedTriangle<f64>> {
         let ball = icosphere(1.0);
         let moved = |corners: [DVec3; 3]| corners.map(|corner| corner + DVec3::X * x);
@@ -174,7 +175,7 @@ mod tests {
         triangles[each..].iter_mut().for_each(PackedTriangle::turn);
         let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
         triangles.extend(PackedTriangle::of_mesh(sheet));
-        // A tube without ends: what of a ball is near its equator.
+        // A tube without ends: the part of a ball near its equator.
         let mut tube = ball(20.0, 0);
         tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
         tube.iter_mut().for_each(PackedTriangle::turn);
@@ -203,12 +204,12 @@ mod tests {
 
     #[test]
     fn faces_hang_together_along_edges() {
-        // Faces 0, 2 and 3 in a row, and two by themselves.
+        // Faces 0, 2 and 3 are connected in a row, the other two are single.
         let parts = components_along_edges(5, [[3, 2], [0, 3]].into_iter());
         assert_eq!(parts, [0, 1, 0, 0, 2]);
         assert_eq!(first_of_parts(&parts), [0, 1, 0, 0, 4]);
         assert!(first_of_parts(&[0; 5]).is_empty());
-        // Those that touch at a corner are one part only where corners count.
+        // Faces that touch only at a corner are connected only if corners count.
         let touching = [[0, 1, 2], [2, 3, 4]];
         assert_eq!(super::parts(&touching), [0, 0]);
     }

@@ -1,5 +1,5 @@
-//! What touches: objects that fill the same surface, and eyes and lights on one. Rounding would decide what
-//! is seen there; here it is decided once, for all rays and in any precision.
+//! Contacts: objects that fill the same surface, and the eye or lights on a surface. Rounding would decide what is
+//! seen there; here it is decided once, for all rays and in any precision.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -10,56 +10,58 @@ use glam::DVec3;
 use super::request::{Model, RenderRequest};
 use crate::scene::{Coincidence, List, Object, Overlap, Projection, Scene, Shape, unit};
 
-/// Most objects that hold lights or the eye and are kept out of the tree; of more, none is.
+/// Maximum number of objects that contain lights or the eye and are kept out of the tree; if there are more, all
+/// stay in it.
 const MOST_APART: usize = 256;
-/// The same of those that fill one surface with others: more of them are found faster in the tree.
+/// The same for objects that share a surface with others: more of them are found faster in the tree.
 const MOST_SHARING: usize = 32;
 
-/// Most pairs of an object and a light that are looked at: ten milliseconds, where either has changed.
+/// Maximum number of pairs of an object and a light that are checked: ten milliseconds whenever either has changed.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// How near to a round surface a point counts as on it, in radii.
+/// Distance from a curved surface up to which a point counts as on it, in radii.
 const ON_ROUND: f64 = 1e-11;
 
-/// How near a light may be on a round object, in radii.
+/// Distance from a curved surface up to which a light may be on it, in radii.
 const NEAR_ROUND: f64 = 1e-5;
 
-/// Objects by their places in the scene's list.
+/// Objects by their indices in the scene's list.
 pub type Places = Vec<usize>;
 
-/// What touches in a picture.
+/// The contacts in a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
-    /// Objects that others hide altogether.
+    /// Objects that others hide completely.
     pub covered: BTreeSet<usize>,
-    /// Objects in whose surface earlier ones lie in part, which are seen there; sorted.
+    /// Pairs of objects that share part of a surface, where the earlier one is seen; sorted.
     pub shared: Vec<Coincidence>,
-    /// The flat objects whose planes hold the eye, which sees their edges at most, or the whole window that parallel
-    /// rays come from, which start behind them.
+    /// The flat objects whose planes contain the eye, which sees at most their edges, or the whole window of
+    /// parallel rays, which start behind them.
     pub edge_on: Places,
-    /// The round object whose surface the eye is on.
+    /// The curved object on whose surface the eye is.
     pub eye_on: Option<usize>,
-    /// Where the lights are.
+    /// The contacts of the lights.
     pub lights: Arc<LightContacts>,
     apart: BTreeSet<usize>,
-    /// The objects in `shared` that are no meshes, which are told by their numbers where they stand.
+    /// The objects in `shared` other than meshes: the numbers of their primitives are needed, in a list or in the
+    /// tree.
     sharing: BTreeSet<usize>,
 }
 
-/// What lights touch.
+/// The contacts of lights.
 #[derive(Clone, Debug, Default)]
 pub struct LightContacts {
-    /// For each light of the scene, the flat objects whose planes hold it: they cast no shadow from it.
+    /// For each light of the scene, the flat objects whose planes contain it: they cast no shadow from it.
     pub held_by: Vec<Places>,
-    /// For each, the first ball whose surface holds it: that casts a shadow on one side of it, exactly. Of further ones,
-    /// rounding decides.
+    /// For each light, the first ball whose surface contains it: on one side that ball casts a shadow, which is
+    /// decided exactly. For further balls, rounding decides.
     pub on_balls: Vec<Option<usize>>,
-    /// The lights of the scene that may be on the surface of an object that is no mesh.
+    /// The lights of the scene that may be on the surface of an object other than a mesh.
     pub touching: Places,
 }
 
 impl LightContacts {
-    /// What touches lights in these places; nothing where that would take long.
+    /// Finds the contacts of lights at these positions; none if that would take too long.
     pub fn new(objects: &List<Object>, lights: &[DVec3]) -> Self {
         if objects.len() * lights.len() > MOST_PAIRS {
             return Self::default();
@@ -75,26 +77,27 @@ impl LightContacts {
     }
 }
 
-/// An object in whose surface others lie.
+/// An object that shares its surface with earlier ones.
 #[derive(Clone, Debug)]
 pub struct Tie {
     /// The numbers of its primitives.
     pub numbers: Range<usize>,
-    /// The others; the first of them that a ray meets there is seen.
+    /// The earlier objects; of those that a ray hits there, the first is seen.
     pub over: Others,
 }
 
-/// Objects in an order: many may lie in one.
+/// An ordered set of objects, searched by primitive number: many may share a surface with one object.
 #[derive(Clone, Debug)]
 pub struct Others {
-    /// The numbers of the primitives of each, by these, and its place in the order.
+    /// The primitive numbers of each object and its rank in the order, sorted by number.
     ranked: Vec<(Range<usize>, usize)>,
-    /// How many of them stand in no tree: the first.
+    /// The number of entries that are not in the tree; they come first.
     listed: usize,
 }
 
 impl Others {
-    /// Objects whose primitives have these numbers, in their order; below `listed`, those stand in no tree.
+    /// Creates the set from the primitive numbers of each object, in order; numbers below `listed` are not in the
+    /// tree.
     pub fn new(numbers: Vec<Range<usize>>, listed: usize) -> Self {
         let ranked = numbers.into_iter().enumerate();
         let mut ranked: Vec<_> = ranked.map(|(rank, numbers)| (numbers, rank)).collect();
@@ -105,7 +108,7 @@ impl Others {
         }
     }
 
-    /// The place in the order of the object whose primitive has a number.
+    /// Returns the rank of the object with this primitive number, if it is in the set.
     pub fn rank_of(&self, number: usize) -> Option<usize> {
         let after = self
             .ranked
@@ -114,21 +117,21 @@ impl Others {
         numbers.contains(&number).then_some(*rank)
     }
 
-    /// The numbers of those that stand in no tree, each of which is one primitive.
+    /// The numbers of the objects outside of the tree, each of which is one primitive.
     pub fn listed(&self) -> impl Iterator<Item = usize> {
         self.ranked[..self.listed]
             .iter()
             .map(|(numbers, _)| numbers.start)
     }
 
-    /// Whether some stand in a tree.
+    /// Returns whether any of the objects are in the tree.
     pub fn are_in_tree(&self) -> bool {
         self.listed < self.ranked.len()
     }
 }
 
 impl Contacts {
-    /// What touches in a picture of a scene; coordinates count from `centre`.
+    /// Collects the contacts in a picture of a scene from its coincidences and those of the lights.
     pub fn new(
         scene: &Scene,
         request: &RenderRequest,
@@ -150,7 +153,7 @@ impl Contacts {
         contacts
     }
 
-    /// Finds what the eye is on: there may be many objects, which are gone through once.
+    /// Finds what the eye is on, in one pass, as there may be many objects.
     fn find_eye(&mut self, scene: &Scene, is_parallel: bool) {
         let eye = scene.camera.position;
         let direction = unit(scene.camera.look_at).unwrap_or_default();
@@ -178,13 +181,13 @@ impl Contacts {
         }
     }
 
-    /// The objects that stand in no tree: those that are hidden, those that hold lights or the eye, and those that share
-    /// a surface, of both unless they are too many.
+    /// The objects that are kept out of the tree: those that are completely hidden, those that contain lights or
+    /// the eye, and those that share a surface; the latter two only if they are not too many.
     pub fn apart(&self) -> &BTreeSet<usize> {
         &self.apart
     }
 
-    /// Whether an object is told by the number that it has in a list.
+    /// Returns whether the number that an object gets in the lists is needed.
     pub fn is_told(&self, index: usize) -> bool {
         self.apart.contains(&index) || self.sharing.contains(&index)
     }
@@ -210,13 +213,13 @@ impl Contacts {
     }
 }
 
-/// Whether a point may be on a round object.
+/// Returns whether a point may be on a curved object.
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
     let mut visible = objects.iter().filter(|object| object.visible);
     visible.any(|object| object.shape.height_per_radius(point) < NEAR_ROUND)
 }
 
-/// For each point the visible flat objects whose planes hold it.
+/// Returns for each point the visible flat objects whose planes contain it.
 fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
     let mut through = vec![Places::new(); points.len()];
     for (index, object) in objects.iter().enumerate() {
@@ -232,7 +235,7 @@ fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
     through
 }
 
-/// For each point the first visible ball that it is on.
+/// Returns for each point the first visible ball on whose surface it is.
 fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
     let is_ball = |object: &Object| object.visible && matches!(object.shape, Shape::Sphere(_));
     let balls = objects.iter().enumerate();
@@ -267,7 +270,7 @@ mod tests {
 
     #[test]
     fn triangles_are_measured_alike_in_lists_and_in_trees_where_some_stand_apart() {
-        // A narrow sheet that rises behind its first half, and a light on the ground.
+        // A narrow sheet that rises in its second half, and a light on the ground.
         let mut scene = Scene::demo();
         scene.objects = List::new();
         scene.lights[0].position = DVec3::new(-40.0, 0.0, -99.0);

@@ -1,4 +1,4 @@
-//! How much of a scene rays come near: what a tree of boxes spares them.
+//! How many tests the tree spares the rays of a picture.
 
 use super::bvh::{Bvh, Child};
 use super::geometry::{Geometry, PlanCache};
@@ -8,18 +8,18 @@ use crate::primitive::{BoundingBox, Ray};
 use crate::scene::Scene;
 use crate::simd::Vec3;
 
-/// Rays along each side of the picture that are looked at.
+/// Number of sampled rays along each side of the picture.
 const LOOKED_AT: u32 = 48;
 
-/// What rays are held against.
+/// Counts of what rays are tested against.
 #[derive(Debug, Default)]
 struct Tests {
     boxes: u64,
     primitives: u64,
 }
 
-/// How many tests the tree of a scene spares the rays of `request` from the camera, as words; nothing where none is
-/// walked. Everything is counted that a ray passes, also what is behind its hit: what is spared is rather more.
+/// Returns in words how many tests the tree of a scene spares the camera rays of `request`; `None` if no tree is
+/// traversed. Counts everything along a ray, also behind its hit, so that the actual saving is larger.
 pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     let plan = Plan::<f64>::new(scene, request, &mut PlanCache::default());
     let geometry = plan.geometry.as_ref().filter(|_| plan.is_boxed)?;
@@ -69,7 +69,7 @@ impl Geometry<f64> {
 }
 
 impl Bvh<f64> {
-    /// Adds the members whose boxes a ray passes to `met`.
+    /// Adds the members whose boxes a ray hits to `met`.
     fn pass(&self, ray: Ray<f64>, tests: &mut Tests, met: &mut Vec<u32>) {
         let mut nodes = vec![0_u32];
         while let Some(node) = nodes.pop().and_then(|node| self.nodes.get(node as usize)) {
@@ -84,7 +84,7 @@ impl Bvh<f64> {
     }
 }
 
-/// Whether a ray meets a box; along its sides it may or may not.
+/// Returns whether a ray hits a box; along its sides, the result may be either.
 fn is_passed(bounds: &BoundingBox<f64>, ray: &Ray<f64>) -> bool {
     let [low, high, origin, direction] =
         [bounds.low, bounds.high, ray.origin, ray.direction].map(Vec3::to_dvec3);

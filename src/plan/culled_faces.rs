@@ -1,4 +1,4 @@
-//! Faces of meshes that rays from the eye or to a light can do without.
+//! Faces of meshes that rays from the eye or to a light can skip.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -11,10 +11,10 @@ use super::packed_mesh::{MeshInstance, PackedMesh};
 use crate::primitive::{FAR_CAUTION, PackedTriangle};
 use crate::simd::{Real, Vec3};
 
-/// Bits of a word.
+/// Bits per word.
 const BITS: usize = 64;
 
-/// Some faces of a mesh, and the nodes that hold no others.
+/// Some faces of a mesh, and the nodes that contain only such faces.
 #[derive(Clone, Debug)]
 pub struct CulledFaces {
     faces: Vec<u64>,
@@ -22,8 +22,8 @@ pub struct CulledFaces {
 }
 
 impl CulledFaces {
-    /// Those of a mesh that are turned to a light in a place, from the middle of the mesh: rays to the light which
-    /// leave a closed mesh there have entered it elsewhere.
+    /// The faces that are turned to a light at `place`, relative to the middle of the mesh: rays to the light that
+    /// leave a closed mesh through these faces have entered it through others.
     fn towards<R: Real>(mesh: &PackedMesh<R>, place: Vec3<R>) -> Self {
         let size = place.max_abs() + mesh.bvh.bounds.max_abs();
         let margin = size * R::from_f64(FAR_CAUTION);
@@ -32,7 +32,7 @@ impl CulledFaces {
         })
     }
 
-    /// The faces of a mesh that are left out.
+    /// Collects the faces of a mesh for which `is_culled` holds.
     pub fn of<R: Real>(
         mesh: &PackedMesh<R>,
         is_culled: impl Fn(&PackedTriangle<R>) -> bool + Sync,
@@ -52,14 +52,14 @@ impl CulledFaces {
     }
 
     fn find_nodes<R: Real>(&mut self, bvh: &Bvh<R>) {
-        // A node stands before those in its boxes.
+        // A node comes before its child nodes.
         for (index, node) in bvh.nodes.iter().enumerate().rev() {
             let all = (0..node.count).all(|place| self.holds(node.child(place)));
             self.nodes[index / BITS] |= u64::from(all) << (index % BITS);
         }
     }
 
-    /// Whether it is such a face, or a node that holds no others.
+    /// Returns whether the child is one of the faces, or a node that contains only such faces.
     #[inline(always)]
     pub fn holds(&self, child: Child) -> bool {
         let (words, index) = match child {
@@ -70,25 +70,25 @@ impl CulledFaces {
     }
 }
 
-/// What was found for the picture before, which the next one may need as well.
+/// Results for the previous picture, which the next one may reuse.
 #[derive(Clone, Debug, Default)]
 pub struct KeptCulledFaces<R> {
     known: HashMap<Key, Known<R>>,
     used: HashMap<Key, Known<R>>,
 }
 
-/// Where a mesh is kept, and the place of a light from its middle, bit by bit.
+/// The address of a mesh, and the bits of a light's position relative to the mesh's middle.
 type Key = (usize, [u64; 3]);
 
 #[derive(Clone, Debug)]
 struct Known<R> {
-    /// Kept, so that no other is where it is.
+    /// Kept alive so that no other mesh gets its address.
     _mesh: Arc<PackedMesh<R>>,
     culled_faces: Arc<CulledFaces>,
 }
 
 impl<R: Real> KeptCulledFaces<R> {
-    /// The faces of a mesh that rays to a light can do without.
+    /// Returns the faces of a mesh that rays to a light can skip.
     pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<CulledFaces> {
         let place = light - mesh.centre;
         let bits = place.to_array().map(|part| part.to_f64().to_bits());
@@ -103,7 +103,7 @@ impl<R: Real> KeptCulledFaces<R> {
         Arc::clone(&found.culled_faces)
     }
 
-    /// Forgets what the last picture did not need.
+    /// Ends a picture: drops the results that it did not use.
     pub fn end(&mut self) {
         self.known = std::mem::take(&mut self.used);
     }

@@ -1,17 +1,17 @@
-//! How far rays may be beside their place in a plan whose pictures tell what rounding may decide.
+//! How far rounding may displace rays, for plans in which samples that rounding may decide are traced again.
 
 use super::pack::Plan;
 use crate::primitive::Blur;
 use crate::simd::Real;
 
 impl<R: Real> Plan<R> {
-    /// Whether what rounding may decide is told.
+    /// Returns whether samples that rounding may decide are looked for.
     pub fn is_doubted(&self) -> bool {
         R::ZERO < self.blur.spread
     }
 
-    /// From now on it is. Rays meet a mesh in coordinates that count from its own middle: where that is far away they
-    /// are rounded there as numbers of its size are.
+    /// Turns on the search for such samples. Rays hit a mesh in coordinates relative to its middle: if that is far
+    /// away, they are rounded there like numbers of its size.
     pub fn doubt(&mut self) {
         let meshes = self.geometry.iter().flat_map(|all| &all.meshes);
         let middles = meshes.map(|mesh| mesh.centre.max_abs());

@@ -1,4 +1,4 @@
-//! Faces that camera rays, or shadow rays to a light, can do without.
+//! Faces that camera rays, or shadow rays to a light, can skip.
 
 use glam::DVec3;
 
@@ -11,13 +11,13 @@ use crate::scene::{Projection, Scene};
 use crate::simd::{Real, Vec3};
 
 impl<R: Real> Plan<R> {
-    /// Finds the faces of solids that camera rays, and shadow rays to each light, can do without.
+    /// Finds the faces of solids that camera rays, and shadow rays to each light, can skip.
     pub fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
         let triangles = &self.primitives.triangles;
         let solids = Solids::among(triangles);
         let turned_away = |point: DVec3| {
             let away = triangles.iter().zip(solids.turned_away(point));
-            // Single precision may close what is open.
+            // In single precision, an open solid may look closed.
             away.map(|(face, is_away)| is_away && face.culling == Culling::Far)
                 .collect()
         };
@@ -30,8 +30,8 @@ impl<R: Real> Plan<R> {
         }
     }
 
-    /// Finds the meshes whose faces towards a light need no shadow test: those with an inside where neither
-    /// the eye nor the light is, so that no ray that counts sets out there either.
+    /// Finds the meshes whose faces towards a light need no shadow test: those with an inside that contains neither
+    /// the eye nor the light, so that no relevant ray starts in there either.
     pub fn drop_lit_faces(
         &mut self,
         scene: &Scene,
@@ -46,7 +46,7 @@ impl<R: Real> Plan<R> {
             return;
         }
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
-        // Where a face is shaded as if it were curved, light comes from beneath it too.
+        // A face that is shaded as curved also receives light from below its plane.
         let meshes = geometry.meshes.iter().enumerate();
         let seen = meshes.map(|(index, mesh)| {
             let holds_eye = self.unseen_faces.get(index).is_some_and(Option::is_some);

@@ -1,26 +1,27 @@
-//! How large what is flat is: pixels stretch along it, and no farther than it goes.
+//! Extents of flat surfaces: a pixel seen at a grazing angle stretches along such a surface, but only as far as it
+//! extends.
 
 use super::geometry::Geometry;
 use crate::primitive::{CornerNormals, Primitive, Primitives, WithPrimitive};
 use crate::simd::{Real, Vec3};
 
-/// The largest of what is flat and ends, in scene units; 0 where nobody asks how pixels lie on it.
+/// Extents of the largest flat bounded surfaces, in scene units; 0 if the stretching of pixels is not computed.
 #[derive(Clone, Copy, Debug)]
 pub struct Flats<R> {
-    /// Of what is in no mesh, large balls among it: where they are the ground, they are seen as flat.
+    /// Of primitives outside of meshes, including spheres: a large sphere seen as the ground looks flat.
     pub loose: R,
     /// Of the faces of meshes.
     pub in_meshes: R,
 }
 
 impl<R: Real> Flats<R> {
-    /// Nobody asks.
+    /// For pictures in which the stretching of pixels is not computed.
     pub const NONE: Self = Self {
         loose: R::ZERO,
         in_meshes: R::ZERO,
     };
 
-    /// Those of a plan.
+    /// The extents for a plan.
     pub fn of(primitives: &Primitives<R>, geometry: Option<&Geometry<R>>) -> Self {
         let Some(geometry) = geometry else {
             return Self {
@@ -39,8 +40,8 @@ impl<R: Real> Flats<R> {
 }
 
 impl<R: Real> Geometry<R> {
-    /// The normal of the primitive of a number, counted from the first, if that is flat and looks so, and how far it goes
-    /// at most, see [`Primitive::flat`].
+    /// Returns the normal and the extent of a primitive, see [`Primitive::flat`], if it is flat and also shaded as
+    /// flat. `number` counts from the geometry's first primitive.
     pub fn flat_at(&self, number: usize) -> Option<(Vec3<R>, R)> {
         let Some(instance) = self.mesh_of(number) else {
             return self.primitives.with(number, AskFlat);
@@ -61,7 +62,7 @@ fn largest_of<R: Real>(primitives: &Primitives<R>) -> R {
     ending.max(largest(&primitives.spheres))
 }
 
-/// Asks a primitive for [`Primitive::flat`].
+/// Calls [`Primitive::flat`].
 pub struct AskFlat;
 
 impl<R: Real> WithPrimitive<R> for AskFlat {

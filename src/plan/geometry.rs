@@ -1,4 +1,4 @@
-//! What many objects become: packed once, in a tree, and kept from picture to picture.
+//! The geometry of many objects: packed once into a tree and kept from picture to picture.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -21,58 +21,58 @@ use crate::primitive::{
 use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
 use crate::simd::{Real, Vec3};
 
-/// Up to so many objects, testing those that a tile can see costs less than walking a tree.
+/// Number of objects up to which testing those visible in a tile is faster than traversing a tree.
 pub const SMALLEST_TREE: usize = 32;
-/// Above so many it costs more, whatever they look like.
+/// Number of objects above which a tree is always faster.
 pub const LARGEST_LIST: usize = 384;
-/// The same for triangles, which seldom come alone.
+/// The same for triangles, which rarely come alone.
 pub const MOST_LISTED_TRIANGLES: usize = 128;
-/// Between these, a tree pays where objects fill a space that is so many times as deep, wide and high as they are:
-/// what a tile sees is then scattered, and most of them may stand before its lights. With 60 to 384 balls in such a
-/// cloud a list takes 1.2 to 5 times as long.
+/// Between these numbers, a tree is used if the objects fill a space whose every side is this many times as long as
+/// they are large: those visible in a tile are then scattered, and most may be in front of its lights. With 60 to
+/// 384 balls in such a cloud, a list takes 1.2 to 5 times as long.
 const DEEPEST_FIELD: f64 = 4.0;
-/// In a field that is not so deep, it pays with fewer pixels than this for each object: by a third with half as many,
-/// as much is lost with ten times as many.
+/// Pixels per object below which a shallower field gets a tree: it saves a third with half as many pixels, and
+/// loses as much with ten times as many.
 const PIXELS_IN_TREES: u64 = 2000;
-/// The same where rays look beside themselves, which costs more in a tree.
+/// The same with adaptive sampling, whose rays also look for things beside them, which costs more in a tree.
 const PIXELS_IN_SMOOTH_TREES: u64 = 500;
 
-/// Most meshes whose parts surround the geometry one by one.
+/// Maximum number of meshes for which the outline uses the boxes of the meshes' own roots.
 const FINE_OUTLINE: usize = 4;
 
-/// How many primitives of each kind there are, and meshes.
+/// The number of primitives of each kind, and of meshes.
 type Counts = ([usize; KINDS], usize);
 
-/// The visible objects that end, ready to be traced: what does not depend on the camera, on lights or on
-/// what colours mean.
+/// The visible bounded objects, ready to be traced: everything that does not depend on the camera, on lights or on
+/// the contents of color packs.
 #[derive(Clone, Debug)]
 pub struct Geometry<R> {
-    /// The objects; no plane is among them.
+    /// The objects other than meshes; no plane is among them.
     pub primitives: Primitives<R>,
     /// The meshes. Their triangles are numbered after the primitives.
     pub meshes: Vec<MeshInstance<R>>,
-    /// The way to them: its members are the numbers of the primitives, then the meshes.
+    /// The tree over both: its members are the numbers of the primitives, then the meshes.
     pub bvh: Bvh<R>,
-    /// How far above what is hit rays that go on from there may start.
+    /// Upper bound of the height above hits at which secondary rays start.
     pub lift: R,
-    /// For each kind of primitive the places of the objects in the scene's list.
+    /// For each kind of primitive, the indices of the objects in the scene's list.
     places: [Vec<usize>; KINDS],
-    /// Whether the tree was built around other places of its members.
+    /// Whether the tree was refitted from that of an earlier picture instead of built.
     is_refitted: bool,
 }
 
-/// What a picture was planned from that the next one may need as well.
+/// Results of the previous plan that the next one may reuse.
 #[derive(Clone, Debug, Default)]
 pub struct PlanCache<R> {
     last: Option<(Source, Arc<Geometry<R>>)>,
     coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
-    /// Meshes that are ready for the next picture, beside those of the last one.
+    /// Packed meshes for the next picture, in addition to those of the last one.
     others: Meshes<R>,
     culled_faces: KeptCulledFaces<R>,
 }
 
-/// What the picture before was planned from, which the next one may need as well.
+/// Results of the previous plan that the next one may reuse, in both precisions.
 #[derive(Clone, Debug, Default)]
 pub struct Planner {
     /// For single precision.
@@ -82,13 +82,13 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// What is planned next need not make meshes ready that are ready in `other`.
+    /// Makes the packed meshes of `other` available to the next plan.
     pub fn share_meshes(&mut self, other: &Self) {
         self.single.share_meshes(&other.single);
         self.double.share_meshes(&other.double);
     }
 
-    /// Makes the meshes of a scene ready that is planned in both precisions: each of them once for both.
+    /// Packs the meshes of a scene that is planned in both precisions: each mesh once for both.
     pub fn pack_meshes(&mut self, scene: &Scene) {
         let Self { single, double } = self;
         if single.is_of(&scene.objects) && double.is_of(&scene.objects) {
@@ -104,14 +104,14 @@ impl Planner {
     }
 }
 
-/// What the geometry depends on.
+/// The inputs that the geometry depends on.
 #[derive(Clone, Debug)]
 struct Source {
     objects: List<Object>,
     centre: DVec3,
-    /// The names of the packs in their order: their places are in the primitives.
+    /// The names of the color packs in order: primitives store their indices.
     packs: Vec<String>,
-    /// The places of objects that stand apart from it.
+    /// The indices of objects that are kept out of the geometry.
     apart: BTreeSet<usize>,
 }
 
@@ -139,31 +139,31 @@ impl<R: Real> PlanCache<R> {
         self.others.extend(other.last_meshes());
     }
 
-    /// The meshes of the last picture.
+    /// The packed meshes of the last picture.
     fn last_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
         let last = self.last.iter();
         last.flat_map(|(_, geometry)| geometry.packed_meshes())
     }
 
-    /// The meshes that are ready, which are not kept any longer beside those of the last picture.
+    /// Takes the available packed meshes; only those of the last picture are kept here.
     fn meshes(&mut self) -> Meshes<R> {
         let mut meshes = std::mem::take(&mut self.others);
         meshes.extend(self.last_meshes());
         meshes
     }
 
-    /// Whether the last picture was of these objects.
+    /// Returns whether the last picture was of these objects.
     fn is_of(&self, objects: &List<Object>) -> bool {
         let mut last = self.last.iter();
         last.any(|(source, _)| source.objects.is_same(objects))
     }
 
-    /// The faces that cast no shadows of their own.
+    /// The faces of meshes that shadow rays can skip, kept from picture to picture.
     pub fn culled_faces(&mut self) -> &mut KeptCulledFaces<R> {
         &mut self.culled_faces
     }
 
-    /// The objects of a scene that fill the same surface; the last ones, if none has changed.
+    /// Returns the objects that fill the same surface; the previous result if no object has changed.
     pub fn coincidences(&mut self, objects: &List<Object>, centre: DVec3) -> Arc<[Coincidence]> {
         if let Some((of, around, found)) = &self.coincidences
             && of.is_same(objects)
@@ -176,7 +176,7 @@ impl<R: Real> PlanCache<R> {
         found
     }
 
-    /// What the lights of a scene touch; the last of it, if nothing has changed.
+    /// Returns the contacts of a scene's lights; the previous result if nothing has changed.
     pub fn light_contacts(&mut self, scene: &Scene) -> Arc<LightContacts> {
         let lights = scene.lights.iter().map(|light| light.position);
         if let Some((objects, places, found)) = &self.light_contacts
@@ -191,16 +191,16 @@ impl<R: Real> PlanCache<R> {
         found
     }
 
-    /// The geometry of a scene, relative to `centre`, without what stands apart, to be sampled in this way: the last
-    /// one, if nothing of it has changed.
+    /// Returns the geometry of a scene relative to `centre`, without the objects `apart`, for this sampling; the
+    /// previous one if nothing of it has changed.
     pub fn geometry(
         &mut self,
         scene: &Scene,
         (centre, apart): (DVec3, &BTreeSet<usize>),
         sampling: Sampling,
     ) -> Arc<Geometry<R>> {
-        // What is looked at as one thing depends on the boxes: where that is asked for, the tree is as it would be
-        // without a picture before.
+        // Adaptive sampling treats the content of small boxes as one thing, so the picture depends on the tree: it
+        // then must be the same as without earlier pictures.
         let may_refit = !matches!(sampling, Sampling::Adaptive { .. });
         if let Some((source, geometry)) = &self.last
             && source.is_of(scene, centre, apart)
@@ -219,8 +219,8 @@ impl<R: Real> PlanCache<R> {
     }
 }
 
-/// Whether the objects of a scene that end are kept in a tree: many of them, fewer where they fill a space or share few
-/// pixels, and any mesh.
+/// Returns whether the bounded objects of a scene are kept in a tree: many of them, fewer if they fill a space or
+/// share few pixels, and any mesh.
 pub fn is_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
     let visible = || scene.visible_objects();
     let is_wanted = match request.accelerator {
@@ -245,7 +245,7 @@ pub fn is_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
     (is_wanted && may_cull) || visible().any(is_mesh)
 }
 
-/// Whether things between these corners fill a space, and no field.
+/// Returns whether things with these bounds fill a space rather than a shallow field.
 fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
     let low = bounds
         .iter()
@@ -255,7 +255,7 @@ fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
         .fold(DVec3::NEG_INFINITY, |high, one| high.max(one.1));
     let sizes = bounds.iter().map(|(low, high)| {
         let [x, y, z] = (*high - *low).to_array();
-        // The second of three: poles are no larger than they are wide.
+        // The median of the three: a pole counts as no larger than it is wide.
         x.min(y).max(x.max(y).min(z))
     });
     let mean = sizes.sum::<f64>() / bounds.len() as f64;
@@ -263,8 +263,8 @@ fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
 }
 
 impl<R: Real> Geometry<R> {
-    /// Packs the objects that are to stand in it, relative to `centre`, with those of the meshes that are packed
-    /// already, and with the tree around so many others as there were before.
+    /// Packs the objects that belong into the tree, relative to `centre`. Reuses meshes that are already packed,
+    /// and refits the tree of the last picture if that had the same number of members of each kind.
     fn new(
         scene: &Scene,
         (centre, apart): (DVec3, &BTreeSet<usize>),
@@ -316,7 +316,7 @@ impl<R: Real> Geometry<R> {
         members.0.extend(meshes.iter().map(MeshInstance::member));
         let lifts = meshes.iter().map(|instance| instance.mesh.lift);
         let member = |number: usize| members.0[number];
-        // Where nothing was added or removed, something has moved: mostly little.
+        // If nothing was added or removed, something has moved, mostly by little.
         let counts = (primitives.counts(), meshes.len());
         let refitted = before
             .filter(|(before, _)| *before == counts)
@@ -335,7 +335,7 @@ impl<R: Real> Geometry<R> {
         (self.primitives.counts(), self.meshes.len())
     }
 
-    /// Boxes that together surround it: those of the root, or of the roots of meshes in them.
+    /// Boxes that together enclose the geometry: those of the root, or of the roots of meshes.
     pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
         let meshes = self.meshes.iter().flat_map(|instance| {
             let boxes = instance.mesh.bvh.outline();
@@ -354,7 +354,7 @@ impl<R: Real> Geometry<R> {
         meshes.map(|instance| Arc::clone(&instance.mesh))
     }
 
-    /// How many primitives there are, triangles of meshes included.
+    /// The number of primitives, including triangles of meshes.
     pub fn len(&self) -> usize {
         let last = self.meshes.last();
         last.map_or(self.primitives.len(), |last| {
@@ -362,23 +362,23 @@ impl<R: Real> Geometry<R> {
         })
     }
 
-    /// How many things there are, with each mesh as one.
+    /// The number of members of the tree: each mesh counts as one.
     pub fn members(&self) -> usize {
         self.primitives.len() + self.meshes.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no primitives.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The number of the primitive that the object at a place in the scene's list became.
+    /// The number of the primitive for the object with this index in the scene's list.
     pub fn number_at(&self, index: usize) -> Option<usize> {
         let mut kinds = self.primitives.firsts().into_iter().zip(&self.places);
         kinds.find_map(|(first, places)| Some(first + places.binary_search(&index).ok()?))
     }
 
-    /// The mesh that the primitive of a number belongs to, counted from that of the first primitive.
+    /// The mesh to which a primitive belongs; numbers count from the geometry's first primitive.
     #[inline(always)]
     pub fn mesh_of(&self, number: usize) -> Option<&MeshInstance<R>> {
         if number < self.primitives.len() {
@@ -389,13 +389,13 @@ impl<R: Real> Geometry<R> {
     }
 }
 
-/// Whether an object stands in the tree of a scene that has one: where it ends and is visible.
+/// Returns whether an object belongs into the tree, if the scene has one: if it is bounded and visible.
 pub fn is_planted(object: &Object) -> bool {
     object.visible && object.shape.bounds().is_some()
 }
 
-/// Measures how thick what loose triangles make is, where they hang together, and finds what of them is one thing.
-/// Primitives of the numbers `apart` are measured by themselves: where there is a tree, the others stand in it.
+/// Measures the thickness of connected loose triangles, and finds groups of them that count as one thing.
+/// Primitives with numbers in `apart` are measured separately: with a tree, the others are in it.
 pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<usize>) {
     let first = primitives.firsts()[Kind::Triangle as usize];
     let places = 0..primitives.triangles.len();
@@ -403,7 +403,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
     let (apart, others): (Vec<usize>, Vec<usize>) = places.clone().partition(is_apart);
     let mut found = vec![None; places.len()];
     for group in [others, apart] {
-        // Measured in double precision, whatever they are traced in.
+        // Measured in double precision, whichever precision traces them.
         let own = group.iter().map(|&at| &primitives.triangles[at]);
         let mut triangles: Vec<_> = own.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);
@@ -428,12 +428,12 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
     primitives.things = if has_things { found } else { Vec::new() };
 }
 
-/// The place of a pack among the materials.
+/// The index of a color pack among the materials.
 pub fn material_number(scene: &Scene, pack: &str) -> u32 {
     scene.color_packs.get_index_of(pack).unwrap_or_default() as u32
 }
 
-/// All primitives that end, in the order of their numbers.
+/// All bounded primitives, in the order of their numbers.
 struct Members<R>(Vec<Member<R>>);
 
 impl<R: Real> Visit<R> for Members<R> {

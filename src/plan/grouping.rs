@@ -1,4 +1,4 @@
-//! Which boxes go with which in a tree: two by two first, then up to sixteen.
+//! Groups boxes into the nodes of a tree: into pairs first, then into nodes of up to sixteen.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -9,39 +9,40 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
-/// How many boxes a node has.
+/// Maximum number of boxes per node.
 pub const GROUP: usize = 16;
-/// Most nodes on the way from the root to a member.
+/// Maximum number of nodes on the path from the root to a member.
 pub const DEEPEST: usize = 24;
-/// More boxes than this are parted first. Two by two, a million would take 230 MB at once and be a worse tree: boxes join
-/// neighbours with no sight of the whole. A hilly ground whose middle is finer is traced in 0.79 of the time; balls that
-/// fill a space are not, and 100,000 of them take 1.08 times as long.
+/// Number of boxes above which they are split into parts first. Clustered as a whole, a million boxes would take
+/// 230 MB at once and make a worse tree: clustering joins neighbours without regard to the whole. With parts, a
+/// hilly ground with a finer middle is traced in 0.79 of the time; balls that fill a space gain nothing, and
+/// 100,000 of them take 1.08 times as long.
 const MANY: usize = 1 << 17;
-/// Most boxes of a part.
+/// Maximum number of boxes per part.
 const PART: usize = 1 << 14;
-/// Share of the boxes that are put elsewhere after the first pass, where that makes the tree better.
+/// Share of the boxes that are reinserted elsewhere after clustering, if that improves the tree.
 const REINSERTED: f32 = 0.02;
 
-/// So many boxes are looked at to see whether many are in one place.
+/// Number of boxes that are sampled to find out whether many coincide.
 const SAMPLED: usize = 512;
-/// How far such are moved, at most, in parts of the largest coordinate.
+/// Maximum distance by which coinciding boxes are moved, as a share of the largest coordinate.
 const LITTLE: f32 = 1e-3;
 
-/// What a box of a node holds.
+/// The content of one box of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Child {
     /// The node of this index.
     Node(u32),
-    /// The member of this number.
+    /// The member with this number.
     Member(u32),
 }
 
-/// What a node holds.
+/// The content of a node.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
-    /// The first [`Self::count`] of these.
+    /// The children, in the first [`Self::count`] places.
     pub children: [Child; GROUP],
-    /// How many it holds.
+    /// The number of children.
     pub count: usize,
 }
 
@@ -61,8 +62,8 @@ impl Held {
     }
 }
 
-/// The nodes of a tree of boxes, which are numbered in their order: the root first, each before those that it
-/// holds.
+/// Builds the nodes of a tree over `boxes`; their indices are their numbers. The root comes first, and each node
+/// before its child nodes.
 pub fn grouped(boxes: &[Aabb]) -> Vec<Held> {
     if boxes.is_empty() {
         return Vec::new();
@@ -72,7 +73,7 @@ pub fn grouped(boxes: &[Aabb]) -> Vec<Held> {
     groups_of(boxes, &mut members, (most, DEEPEST))
 }
 
-/// The tree of some of the boxes: of parts of them where there are more than `most`.
+/// Builds the tree over some of the boxes; splits them into parts first if there are more than `most`.
 fn groups_of(boxes: &[Aabb], members: &mut [u32], (most, deepest): (usize, usize)) -> Vec<Held> {
     if members.len() > most {
         let parts = in_parts(boxes, members).into_par_iter();
@@ -87,7 +88,7 @@ fn groups_of(boxes: &[Aabb], members: &mut [u32], (most, deepest): (usize, usize
     widened(&pairs, deepest).unwrap_or_else(|| bundled(&pairs.primitive_indices))
 }
 
-/// Members in [`GROUP`] parts of one size, halved across where they are longest.
+/// Splits the members into [`GROUP`] parts of equal size, by repeated halving across the longest axis.
 fn in_parts<'a>(boxes: &[Aabb], members: &'a mut [u32]) -> Vec<&'a mut [u32]> {
     let mut parts = vec![members];
     while parts.len() < GROUP {
@@ -106,7 +107,7 @@ fn in_parts<'a>(boxes: &[Aabb], members: &'a mut [u32]) -> Vec<&'a mut [u32]> {
     parts
 }
 
-/// Trees under a root of their own.
+/// Joins trees under a new root.
 fn under_one_root(trees: Vec<Vec<Held>>) -> Vec<Held> {
     let mut groups = vec![Held::default()];
     for tree in trees {
@@ -124,8 +125,8 @@ fn under_one_root(trees: Vec<Vec<Held>>) -> Vec<Held> {
     groups
 }
 
-/// Boxes two by two: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
-/// Hierarchy Construction", TVCG 24(3), 2018, with some boxes put elsewhere afterwards.
+/// Clusters boxes into a binary tree: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
+/// Hierarchy Construction", TVCG 24(3), 2018, followed by reinsertion of some boxes.
 fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
     if are_many_alike(&boxes) {
         tell_apart(&mut boxes);
@@ -142,7 +143,7 @@ fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
     pairs
 }
 
-/// Whether many boxes are where others are, by a sample of them.
+/// Returns whether many boxes coincide with others, judged by a sample.
 fn are_many_alike(boxes: &[Aabb]) -> bool {
     let step = boxes.len().div_ceil(SAMPLED).max(1);
     let bits = |one: &Aabb| {
@@ -156,8 +157,8 @@ fn are_many_alike(boxes: &[Aabb]) -> bool {
     different.len() * 2 < sampled.len()
 }
 
-/// Moves boxes a little, each by another way. Those in one place would go together one by one, since each takes the
-/// same neighbour for the nearest: 40,000 balls took half a minute. Only who goes with whom is taken from them.
+/// Moves each box a little in its own direction. Coinciding boxes would be joined one at a time, since all choose
+/// the same nearest neighbour: 40,000 balls took half a minute. The moved boxes only determine the grouping.
 fn tell_apart(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
     let size = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
@@ -174,13 +175,13 @@ fn tell_apart(boxes: &mut [Aabb]) {
     }
 }
 
-/// What becomes of a pair where its box may take up 1, 2, … [`GROUP`] places of a node: 0 if it is one box,
-/// else how many of the places its first half takes. It has one box in one place; how its own node is shared
-/// out stands there.
+/// How a pair (a node of the binary tree) is distributed if it may take up 1, 2, … [`GROUP`] places of a wide node:
+/// 0 if it stays one box, otherwise the number of places for its first half. With only one place it always is one
+/// box, so that entry holds how the wide node of the pair itself is distributed.
 type Shares = [u8; GROUP];
 
-/// The [`Shares`] of all pairs that have halves. Halves stand side by side behind the root: where they do says
-/// whose they are.
+/// The [`Shares`] of all pairs that have halves. Halves are stored side by side after the root, so their position
+/// identifies the pair.
 struct AllShares(Vec<Shares>);
 
 impl AllShares {
@@ -189,13 +190,13 @@ impl AllShares {
     }
 }
 
-/// Shares out the places of nodes so that their boxes have the smallest surfaces together: what is met at
-/// random is met in proportion to its surface. Ylitie, Karras and Laine, "Efficient incoherent ray traversal
-/// on GPUs through compressed wide BVHs", HPG 2017, ch. 3; members cost the same wherever they are held.
+/// Distributes the places of wide nodes so that the total surface area of their boxes is smallest: random rays hit
+/// a box in proportion to its surface area. Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs
+/// through compressed wide BVHs", HPG 2017, ch. 3; members cost the same wherever they are held.
 fn shared_out(pairs: &Bvh2) -> AllShares {
     let mut shares = vec![[0; GROUP]; pairs.nodes.len().div_ceil(2)];
     let mut waiting = vec![(0, false)];
-    // The surfaces of all nodes in a pair, by the places that it may take up.
+    // Total surface area of the wide nodes in a pair, by the number of places it may take up.
     let mut surfaces: Vec<[f32; GROUP]> = Vec::new();
     while let Some((index, is_entered)) = waiting.pop() {
         let node = &pairs.nodes[index];
@@ -213,7 +214,7 @@ fn shared_out(pairs: &Bvh2) -> AllShares {
     AllShares(shares)
 }
 
-/// The surfaces of a pair of this surface, whose halves have those, and how it is shared out.
+/// Returns the total surface areas for a pair with this surface area and these halves, and how it is distributed.
 fn shared_among(
     surface: f32,
     first: &[f32; GROUP],
@@ -240,10 +241,11 @@ fn shared_among(
     (surfaces, shares)
 }
 
-/// Groups of pairs, from the largest pairs down; `None` if that becomes too deep.
+/// Turns pairs into wide nodes, from the root down; `None` if the tree becomes too deep.
 fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<Held>> {
     let shares = shared_out(pairs);
-    // The pair of each group, and how deep that is: no more room is taken than they need.
+    // The pair and the depth of each wide node; they are listed first, so that no more memory is allocated than
+    // needed.
     let mut tops = vec![(0, 1)];
     let mut at = 0;
     while let Some(&(pair, depth)) = tops.get(at) {
@@ -273,7 +275,7 @@ fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<Held>> {
     Some(groups)
 }
 
-/// The pairs in the node of a pair.
+/// The pairs that become the boxes of the wide node of `pair`.
 fn opened(pairs: &Bvh2, shares: &AllShares, pair: usize) -> Vec<usize> {
     let mut held = Vec::with_capacity(GROUP);
     let halves = |pair: usize, places: usize, share: u8| {
@@ -301,7 +303,7 @@ fn opened(pairs: &Bvh2, shares: &AllShares, pair: usize) -> Vec<usize> {
     held
 }
 
-/// Groups of neighbours in a list: no better than their order, but never deep.
+/// Groups neighbours in a list into nodes: only as good as the order of the list, but never deep.
 fn bundled(order: &[u32]) -> Vec<Held> {
     let mut groups = vec![Held::default()];
     let mut waiting = VecDeque::from([(0, order)]);
@@ -324,7 +326,7 @@ fn bundled(order: &[u32]) -> Vec<Held> {
 mod tests {
     use super::*;
 
-    /// How often each member is held, and how deep the deepest stands.
+    /// How often each member is held, and the depth of the deepest node.
     fn found(groups: &[Held], length: usize) -> (Vec<u32>, usize) {
         let (mut found, mut deepest) = (vec![0; length], 0);
         let mut waiting = vec![(0, 1)];
@@ -365,7 +367,7 @@ mod tests {
         assert!(found.iter().all(|&times| times == 1));
         assert!(deepest <= 9, "{deepest}");
         assert_eq!(groups[0].count, GROUP);
-        // Parts next to each other share no more than an edge.
+        // Adjacent parts overlap no more than by an edge.
         let mut members: Vec<u32> = (0..count as u32).collect();
         let around = in_parts(&boxes, &mut members).into_iter().map(|part| {
             let own = part.iter().map(|&member| boxes[member as usize]);

@@ -1,5 +1,5 @@
-//! Faces of meshes that hold the eye, the window of parallel rays, or a light: rounding would decide on which side of
-//! them it is. Such a face is not seen by the eye and casts no shadow from the light.
+//! Faces of meshes that contain the eye, the window of parallel rays, or a light, so that rounding would decide on
+//! which side of them it is. Such a face is invisible to the eye and casts no shadow from the light.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -15,20 +15,20 @@ use crate::primitive::{BoundingBox, PackedTriangle};
 use crate::scene::{Mesh, PlanePiece, Projection, Scene, Shape, unit};
 use crate::simd::{Real, Vec3};
 
-/// How high above a face, as a share of the coordinates, single precision may take a point to be that is on it.
+/// Height above a face, as a share of the coordinates, that single precision may give a point on the face.
 const ON_FACE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 
-/// Where rays start from, or go to.
+/// A place from which rays start, or to which they go.
 #[derive(Clone, Copy)]
 struct Place {
     /// In the world.
     point: DVec3,
-    /// The direction of parallel rays, which come from a window through the point.
+    /// The direction of parallel rays, which start from a window through the point.
     direction: Option<DVec3>,
 }
 
 impl<R: Real> Plan<R> {
-    /// Finds the faces that hold the eye or a light.
+    /// Finds the faces that contain the eye or a light.
     pub fn hold(&mut self, scene: &Scene, request: &RenderRequest) {
         let Some(geometry) = &self.geometry else {
             return;
@@ -61,7 +61,7 @@ impl<R: Real> Plan<R> {
 }
 
 impl Place {
-    /// The faces of a mesh that hold it; none where no face does.
+    /// The faces of a mesh that contain the place; `None` if there are none.
     fn held_by<R: Real>(
         &self,
         instance: &MeshInstance<R>,
@@ -75,10 +75,10 @@ impl Place {
             |face| near.may_be_held(&packed.triangles[face as usize]),
         );
         if !may_hold {
-            return None; // Only now are all faces worth a look.
+            return None; // Only now is it worth checking all faces.
         }
         let faces = mesh.source.triangles().corners().zip(mesh.world_corners());
-        // What is near is not on it: rounding may decide there, and is told where it does.
+        // A point only near a face is not on it: there rounding may decide, and doubtful samples are traced again.
         let holding = faces.filter(|(_, corners)| {
             PlanePiece::between(*corners).is_some_and(|piece| self.is_in(&piece))
         });
@@ -97,7 +97,7 @@ impl Place {
     }
 }
 
-/// The same, from the middle of a mesh, and as exactly as its faces are known.
+/// The same place relative to the middle of a mesh, with the rounding error of the mesh's faces.
 #[derive(Clone, Copy)]
 struct Near<R> {
     point: Vec3<R>,
@@ -116,7 +116,7 @@ impl<R: Real> Near<R> {
         }
     }
 
-    /// Whether a box may hold it, or meets the window.
+    /// Returns whether a box may contain the point, or intersects the window.
     fn meets(&self, bounds: &BoundingBox<R>) -> bool {
         let (middle, _) = bounds.ball();
         let half = bounds.high - middle + Vec3::splat(self.slack);
@@ -143,7 +143,7 @@ impl<R: Real> Near<R> {
     }
 }
 
-/// The corners of a face, bit by bit, whichever way it is wound and whichever comes first.
+/// The bits of a face's corners, independent of winding and of which corner comes first.
 fn sorted<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
     let bits = |corner: Vec3<R>| corner.to_array().map(|part| part.to_f64().to_bits());
     let mut corners = corners.map(bits);
@@ -151,14 +151,14 @@ fn sorted<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
     corners
 }
 
-/// Whether any member is it, of those in boxes that count.
+/// Returns whether `is_it` holds for any member in the boxes for which `counts` holds.
 fn meets_any<R: Real>(
     bvh: &Bvh<R>,
     counts: impl Fn(&BoundingBox<R>) -> bool,
     is_it: impl Fn(u32) -> bool,
 ) -> bool {
     if !counts(&bvh.bounds) {
-        return false; // Most are far away, and there may be many.
+        return false; // Most meshes are far away, and there may be many.
     }
     let mut waiting = vec![0];
     while let Some(node) = waiting

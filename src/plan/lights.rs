@@ -1,4 +1,4 @@
-//! The lights that shine on what the eye can reach.
+//! The lights that can shine on what the eye can reach.
 
 use std::sync::Arc;
 
@@ -15,42 +15,43 @@ use crate::simd::{Real, Vec3};
 /// A point light.
 #[derive(Clone, Debug)]
 pub struct PointLight<R> {
-    /// Where it shines from.
+    /// Position relative to the scene's middle.
     pub position: Vec3<R>,
-    /// The same in the world.
+    /// Position in the world.
     pub place: DVec3,
     /// > 0.
     pub intensity: R,
-    /// For each triangle, whether another one casts all of its shadow; empty where none is known.
+    /// For each triangle, whether others cast all of its shadow; empty if no such triangles are known.
     pub shadow_culled_faces: Vec<bool>,
-    /// For each mesh of the geometry, the faces that hold the light, or cast no shadow which others do not, if some are
-    /// known.
+    /// For each mesh of the geometry, the faces that shadow rays skip, if any are known: those that contain the
+    /// light, or whose shadow is also cast by other faces.
     pub culled_faces: Vec<Option<Arc<CulledFaces>>>,
-    /// Numbers of primitives that hold the light: no ray is held against them to see whether they are before it.
+    /// Numbers of the listed primitives whose plane or surface contains the light. Shadow rays do not test them.
     pub holders: Vec<usize>,
-    /// The ball among them, if one is.
+    /// The ball among them, if there is one.
     pub ball: HoldingBall<R>,
-    /// What rounding may have moved its position by, in the scene file as well.
+    /// Upper bound of the rounding error of its position, including the rounding in the scene file.
     pub rounding: R,
-    /// Whether it may be in the plane of something: what it is no higher above than that is not lit.
+    /// Whether it may be in the plane of a surface: surfaces are then lit only if it is above them by more than
+    /// rounding.
     pub may_be_level: bool,
-    /// Whether it may be on a surface: what is no farther from it than that does not stand before it.
+    /// Whether it may be on a surface: anything within rounding of it then casts no shadow.
     pub may_touch: bool,
 }
 
-/// A ball whose surface holds a light. A ray to the light meets it there, and, where it comes from behind the plane that
-/// touches the ball there, once more: so far before the light as the chord is long, which is the diameter times the
-/// cosine of the angle between the ray and the normal. Rounding decides about neither.
+/// A ball whose surface contains a light. A ray to the light hits the ball at the light and, if it comes from
+/// behind the tangent plane there, once before: by the length of the chord, which is the diameter times the cosine
+/// of the angle between ray and normal. Rounding decides neither of these hits.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldingBall<R> {
-    /// Its normal at the light, outwards, times its diameter; zero where there is no ball.
+    /// Outward unit normal at the light times the diameter; zero without a ball.
     pub chord: Vec3<R>,
     /// Twice its radius.
     pub diameter: R,
 }
 
 impl<R: Real> HoldingBall<R> {
-    /// What an object is to a light there; none if it is no ball.
+    /// The ball of a shape that contains the light; one without a size for any other shape.
     fn new(shape: Option<&Shape>, light: DVec3) -> Self {
         let (center, diameter) = match shape {
             Some(Shape::Sphere(ball)) => (ball.center, 2.0 * ball.radius),
@@ -64,11 +65,13 @@ impl<R: Real> HoldingBall<R> {
     }
 }
 
-/// A light that is farther away than so many times what stands in a tree is rounded by more than its boxes differ.
+/// Largest distance of a light, in sizes of the tree, at which it serves as an apex: beyond, its position is
+/// rounded by more than the boxes differ.
 const FARTHEST_APEX: f64 = 16.0;
 
 impl<R: Real> PointLight<R> {
-    /// Where the rays that go to it come together, if that is near enough to be told from there where they start.
+    /// The point where the rays to the light converge, if it is near enough for boxes to be tested against rays
+    /// from there.
     #[inline(always)]
     pub fn apex(&self, geometry: &Geometry<R>) -> Option<Vec3<R>> {
         let farthest = geometry.bvh.bounds.max_abs() * R::from_f64(FARTHEST_APEX);
@@ -76,8 +79,9 @@ impl<R: Real> PointLight<R> {
     }
 }
 
-/// Lights that shine on what the eye can reach. `touches` tells whether one may be on a surface, `holders` gives
-/// the numbers of what holds it, `ball` the place of the ball among that.
+/// Packs the lights that shine on what the eye can reach. By index of a light, `touches` returns whether it may be
+/// on a surface, `holders` the numbers of the primitives that contain it, and `ball` the index of the ball that
+/// contains it.
 pub fn pack_lights<R: Real>(
     scene: &Scene,
     centre: DVec3,
@@ -89,7 +93,7 @@ pub fn pack_lights<R: Real>(
     ),
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
-    // Of the planes of a mesh's faces, nobody knows which a light is in.
+    // Whether a light is in the plane of any face of a mesh is unknown.
     let has_meshes = scene.faces() > 0 && !all;
     let lights = scene.lights.iter().enumerate();
     let shining = lights.filter(|(_, light)| light.visible && (all || light.intensity > 0.0));

@@ -1,4 +1,4 @@
-//! Colour packs, made ready for shading.
+//! Color packs prepared for shading.
 
 use glam::DVec3;
 
@@ -6,48 +6,47 @@ use super::request::{Model, RenderRequest};
 use crate::scene::{ColorPack, HighlightMethod, Scene};
 use crate::simd::{Exponent, Real, Vec3};
 
-/// A material with everything multiplied in that is the same for all its points. Colours are 0–1.
+/// A material, with all factors multiplied in that are the same at each of its points. Colours are 0–1.
 #[derive(Clone, Copy, Debug)]
 pub struct Material<R> {
-    /// What is seen without any light: ambient intensity · ambient, or the full ambient colour of a
-    /// marker.
+    /// Colour without any light: ambient intensity · ambient, or the full ambient colour of a marker.
     pub base: Vec3<R>,
-    /// How lights and mirrored things add to it; `None` for markers and for packs that are black
-    /// in both.
+    /// How lights and mirror images add to it; `None` for markers and for packs in which both the diffuse and the
+    /// specular colour are black.
     pub surface: Option<Surface<R>>,
 }
 
-/// The part of a material that answers to light.
+/// The part of a material that responds to light.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<R> {
-    /// Matte colour.
+    /// Diffuse colour.
     pub diffuse: Vec3<R>,
-    /// Highlight colour.
+    /// Specular colour.
     pub specular: Vec3<R>,
-    /// Sharpness of the highlight; `None` where there is none.
+    /// Phong exponent of the highlight; `None` without a highlight.
     pub exponent: Option<Exponent>,
-    /// (Σ intensities) · specular, the filter of the mirror image; `None` where there is none.
+    /// (Σ intensities) · specular, the factor of the mirror image; `None` without one.
     pub mirror: Option<Vec3<R>>,
 }
 
 impl<R: Real> Surface<R> {
-    /// How wide the highlight is, if it may be smaller than a pixel; see [`Exponent::size`].
+    /// The size of the highlight, if it may be smaller than a pixel; see [`Exponent::size`].
     pub fn size_of_highlight(&self) -> Option<f64> {
         self.exponent.and_then(Exponent::size)
     }
 
-    /// The sum of the channels of the matte colour.
+    /// The sum of the channels of the diffuse colour.
     pub fn brightness(&self) -> R {
         self.diffuse.x + self.diffuse.y + self.diffuse.z
     }
 
-    /// The sum of the channels of the highlight's colour.
+    /// The sum of the channels of the specular colour.
     pub fn gloss(&self) -> R {
         self.specular.x + self.specular.y + self.specular.z
     }
 }
 
-/// One material per pack, then one per pack as a marker wears it.
+/// One material per color pack, then one per color pack as used by markers.
 pub fn pack_materials<R: Real>(scene: &Scene, request: &RenderRequest) -> Vec<Material<R>> {
     let lights = scene.visible_lights();
     let total_intensity: f64 = lights.map(|light| light.intensity).sum();
@@ -78,7 +77,7 @@ fn pack_surface<R: Real>(
     })
 }
 
-/// How an exponent is raised to by a method.
+/// The form in which a method computes powers with this exponent.
 pub fn exponent(method: HighlightMethod, exponent: f64) -> Exponent {
     match method {
         HighlightMethod::Auto => Exponent::new(exponent),
@@ -87,7 +86,7 @@ pub fn exponent(method: HighlightMethod, exponent: f64) -> Exponent {
     }
 }
 
-/// 0–255 to 0–1.
+/// Converts a colour from 0–255 to 0–1.
 pub fn linear<R: Real>(color: DVec3) -> Vec3<R> {
     Vec3::from_dvec3(color * (1.0 / 255.0))
 }

@@ -1,4 +1,4 @@
-//! Meshes that are ready, kept from picture to picture.
+//! Packed meshes, kept from picture to picture.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -7,16 +7,16 @@ use super::packed_mesh::{LevelKey, MeshKey, PackedMesh};
 use crate::scene::Mesh;
 use crate::simd::Real;
 
-/// Meshes that are ready in a precision, by what they were made of.
+/// Packed meshes of one precision, by what they were made from.
 #[derive(Clone, Debug, Default)]
 pub struct Meshes<R> {
     all: HashMap<MeshKey, Arc<PackedMesh<R>>>,
-    /// One of those that are the same but for how they are turned.
+    /// For meshes that differ only in rotation, one of them.
     turned: HashMap<LevelKey, Arc<PackedMesh<R>>>,
 }
 
 impl<R: Real> Meshes<R> {
-    /// What is packed of a mesh, wherever that is: made ready unless it is.
+    /// Returns the packed form of a mesh, independent of its position; packs it if it is not known yet.
     pub fn ready(&mut self, mesh: &Mesh) -> Arc<PackedMesh<R>> {
         let key = MeshKey::of(mesh);
         if let Some(known) = self.all.get(&key) {
@@ -35,7 +35,7 @@ impl<R: Real> Meshes<R> {
         self.all.insert(packed.key, packed);
     }
 
-    /// Takes over what is ready in double precision, and shares its tree from then on.
+    /// Takes over a mesh packed in double precision, rounded, and shares its tree.
     pub fn take_over(&mut self, packed: &Arc<PackedMesh<f64>>) {
         let own = self.all.get(&packed.key);
         if !own.is_some_and(|own| Arc::ptr_eq(&own.bvh.nodes, &packed.bvh.nodes)) {

@@ -1,6 +1,6 @@
-//! What the kernels want ready, recomputed from the scene on every edit: primitives packed by kind,
-//! rebased around the scene's middle and narrowed to the kernel's real type, without what the
-//! picture cannot show. No names, no file.
+//! The data that the kernels need, recomputed from the scene on every edit: primitives packed by kind, relative to
+//! the scene's middle and in the kernel's real type, without what the picture cannot show. Contains no names and no
+//! file paths.
 
 mod balls;
 

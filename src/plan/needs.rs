@@ -1,4 +1,4 @@
-//! What a picture of a scene needs, and why: the plan in words, one line for each of its rules.
+//! What a picture of a scene needs, and why: the plan in words, one entry per rule.
 
 use std::collections::HashSet;
 
@@ -13,28 +13,28 @@ use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Sc
 use crate::simd::Exponent;
 use crate::words::counted;
 
-/// The rule for how primitives are found.
+/// The name of the rule for how primitives are found.
 pub const ACCELERATOR: &str = "accelerator";
 
-/// Why something is as it is that a user has chosen.
+/// The reason for anything that the user has chosen.
 const ASKED: &str = "it was asked for";
 
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Need {
-    /// Its name, for programs.
+    /// The name of its rule, for programs.
     pub rule: &'static str,
     /// What was decided.
     pub what: String,
-    /// What in the scene decided it.
+    /// The property of the scene that decided it.
     pub why: String,
-    /// What that spares.
+    /// What the decision saves.
     pub saves: String,
 }
 
-/// The decisions of the plan for `request` of `scene`, which must pass [`crate::scene::check`].
+/// Returns the decisions of the plan for `request` of `scene`, which must pass [`crate::scene::check`].
 pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
-    // Meshes count; what is in them need not be made ready for that.
+    // Only the number of meshes matters, so their triangles are not packed.
     let plan = Plan::<f64>::new(&scene.abridged(), request, &mut PlanCache::default());
     vec![
         precision(scene, request),
@@ -344,7 +344,7 @@ fn visible_faces(scene: &Scene) -> usize {
 
 fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need {
     let rule = "highlights";
-    // Of packs that nothing wears, none is computed.
+    // Highlights of unused color packs are never computed.
     let visible = scene.visible_objects();
     let worn: HashSet<&str> = visible.map(|object| &*object.color_pack).collect();
     let packs = plan.materials.iter().zip(scene.color_packs.keys());

@@ -1,4 +1,4 @@
-//! The scene as flat lists of one kind each.
+//! The plan of a picture: the scene as flat lists, one per kind of primitive.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -29,88 +29,89 @@ use crate::scene::{
 };
 use crate::simd::{Real, Vec3};
 
-/// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle,
-/// so that single precision is spent on the scene and not on its distance from the origin.
+/// A scene and a view of it, ready to be traced. Coordinates are relative to the scene's middle, so that single
+/// precision is spent on the scene and not on its distance from the origin.
 #[derive(Clone, Debug)]
 pub struct Plan<R> {
-    /// The scene's middle, which all coordinates are relative to.
+    /// The scene's middle, the origin of all coordinates.
     pub centre: DVec3,
-    /// Primary rays.
+    /// Generates the primary rays.
     pub view: View<R>,
-    /// What tiles keep lists of: everything that rays can meet, or what is left beside the geometry. The
+    /// The primitives that are listed per tile: all of them without `geometry`, otherwise those outside of it. The
     /// first spheres are the markers of the lights.
     pub primitives: Primitives<R>,
-    /// How many spheres are markers, which cast no shadow.
+    /// The number of spheres that are markers, which cast no shadow.
     pub markers: usize,
-    /// What stands in a tree. Its numbers follow those of `primitives`.
+    /// The objects in the BVH. Their primitives are numbered after those of `primitives`.
     pub geometry: Option<Arc<Geometry<R>>>,
-    /// How hits are put into packets.
+    /// How hits are grouped into packets.
     pub hit_order: HitOrder,
-    /// Whether only what is in the boxes is tested that a ray meets.
+    /// Whether rays test only what is in the boxes they hit; otherwise they test everything in the tree.
     pub is_boxed: bool,
-    /// Where balls are in the picture that together surround the geometry; none if that is unknown.
+    /// Screen rectangles of balls that together enclose the geometry; empty if unknown.
     pub outline: Vec<Rectangle>,
-    /// Lights that shine.
+    /// The lights that can shine on something visible.
     pub lights: Vec<PointLight<R>>,
-    /// What the primitives' `material` numbers mean.
+    /// The materials, indexed by the primitives' `material`.
     pub materials: Vec<Material<R>>,
-    /// What is written.
+    /// What the kernels write as colour.
     pub show: Show<R>,
     /// Colour of a ray that hits nothing, 0–1.
     pub background: Vec3<R>,
-    /// How many reflections a ray may have behind it and still spawn another.
+    /// Maximum number of reflections along a path.
     pub reflection_limit: u32,
     /// The formulas to trace with.
     pub methods: Methods,
     /// Where shadow and reflection rays start.
     pub ray_origin: RayOrigin<R>,
-    /// Whether planes must be tested for shadows. What a perspective eye reaches, directly or in
-    /// mirrors, lies on its side of every plane, so a plane blocks a light for all points or none.
+    /// Whether planes must be tested for shadows. Everything that a perspective camera reaches, directly or in
+    /// mirrors, is on the camera's side of every plane, so a plane blocks a light for all points or for none.
     pub planes_cast: bool,
     /// Whether shadow rays are traced even where a surface faces away from the light.
     pub shadows_behind: bool,
-    /// Where each primitive that ends is in the picture, kind by kind; `None` where formulas are in use
+    /// The screen rectangle of each bounded primitive, by kind; `None` if nothing may be culled, as with formulas
     /// whose failures must not be hidden.
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
-    /// Balls around the `primitives` that end.
+    /// Balls around the bounded primitives of `primitives`.
     pub balls: Balls<R>,
-    /// Their numbers.
+    /// The primitive number of each of these balls.
     pub in_balls: Vec<u32>,
-    /// For each triangle, whether no camera ray needs it; empty where they all may.
+    /// For each triangle, whether it can be skipped for camera rays; empty if none can.
     pub camera_culled_faces: Vec<bool>,
-    /// Numbers of primitives whose planes hold the eye, or all of where parallel rays start: no camera ray needs them.
+    /// Numbers of primitives whose planes contain the eye, or the whole window from which parallel rays start.
+    /// Camera rays skip them.
     pub edge_on: Vec<usize>,
-    /// For each mesh of the geometry, the faces that no camera ray needs for the same reason, if there are any.
+    /// For each mesh of the geometry, the faces that camera rays skip for the same reason, if any.
     pub unseen_faces: Vec<Option<Arc<CulledFaces>>>,
-    /// The number of what the camera's rays start on.
+    /// The number of the primitive on which the camera's rays start.
     pub eye_on: Option<usize>,
-    /// What others lie in the surface of, which are seen there; sorted by its numbers.
+    /// Primitives that share their surface with earlier objects, which are seen there; sorted by number.
     pub ties: Vec<Tie>,
-    /// How far above hits rays start at least, as a share of the coordinates: off what may lie in the same surface.
-    /// What is met so near to a hit is in its surface.
+    /// Least height above hits at which secondary rays start, as a share of the coordinates, so that they clear
+    /// anything in the same surface. Anything hit within that distance of a hit counts as being in its surface.
     pub clearance: R,
-    /// How many objects are visible.
+    /// The number of visible objects.
     pub things: usize,
-    /// How large what is flat is.
+    /// The extents of the largest flat primitives.
     pub flats: Flats<R>,
-    /// The largest coordinate of what ends.
+    /// The largest coordinate of the bounded objects.
     pub farthest: R,
-    /// The same without what is much farther away than most, see [`CoordinateFrame`].
+    /// The same without objects that are much farther away than most, see [`CoordinateFrame`].
     pub extent: R,
-    /// How far the camera's rays may be beside their place; nothing where nobody asks what that leaves undecided.
+    /// How far rounding may displace the camera's rays; zero if doubtful samples are not looked for.
     pub blur: Blur<R>,
-    /// The largest coordinate of the middle of a mesh; 0 where nobody asks that.
+    /// The largest coordinate of a mesh's middle; 0 if doubtful samples are not looked for.
     pub farthest_middle: R,
 }
 
-/// Pixels added around everything for the rounding of the kernel.
+/// Pixels added around every screen rectangle to cover the kernel's rounding.
 const MARGIN: f64 = 1.0;
-/// The same where rays also look beside themselves: a pixel, as wide as in the middle of the
-/// picture, where the picture's rays are closest to each other.
+/// The same with adaptive sampling, where rays also look for things up to a pixel beside them: a pixel as wide as
+/// in the middle of the picture, where rays are closest together.
 const SMOOTH_MARGIN: f64 = 4.0;
 
 impl<R: Real> Plan<R> {
-    /// Packs what `request` of `scene` can show. The scene must pass [`crate::scene::check`].
+    /// Plans `request` of `scene`, packing only what can be seen. The scene must pass [`crate::scene::check`].
     pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut PlanCache<R>) -> Self {
         let frame = CoordinateFrame::of(scene).unwrap_or(CoordinateFrame {
             centre: scene.camera.position,
@@ -122,7 +123,7 @@ impl<R: Real> Plan<R> {
             _ => frame.centre,
         };
         let (occluders, model) = (classify_planes(scene, request), request.model);
-        // The classic formula hits spheres where they are not: that must show.
+        // The classic formula hits spheres where they are not, which must stay visible.
         let is_whole = matches!(model, Model::Unculled | Model::Everything);
         let may_cull = request.methods.sphere == SphereMethod::Stable && !is_whole;
         let mut plan = Self {
@@ -177,7 +178,7 @@ impl<R: Real> Plan<R> {
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {
             let ball = contacts.lights.on_balls.get(light).copied().flatten();
-            // Where it stands in a tree, it is held against rays like everything else.
+            // If it is in the tree, rays test it like everything else.
             ball.filter(|index| number(index).is_some())
         };
         let holders = |light: usize| {
@@ -195,7 +196,7 @@ impl<R: Real> Plan<R> {
         }
         if may_cull {
             plan.bound();
-            // What leaks through a face must not find that those behind it were left out.
+            // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
                 plan.drop_lit_faces(scene, request, kept.culled_faces());
@@ -205,7 +206,7 @@ impl<R: Real> Plan<R> {
         plan
     }
 
-    /// Takes what stands in a tree, and surrounds it.
+    /// Stores the geometry of the BVH and the screen rectangles that enclose it.
     fn take_geometry(
         &mut self,
         geometry: Arc<Geometry<R>>,
@@ -221,15 +222,15 @@ impl<R: Real> Plan<R> {
         self.geometry = Some(geometry);
     }
 
-    /// Packs the markers, then the visible objects that stand in no tree. Gives the numbers of those that
-    /// are told by them, by their places in the scene.
+    /// Packs the markers, then the visible objects that are not in the tree. Returns the primitive numbers of the
+    /// objects whose contacts refer to them, by index in the scene's list.
     fn pack(
         &mut self,
         scene: &Scene,
         contacts: &Contacts,
         projector: Option<&Projector>,
     ) -> HashMap<usize, usize> {
-        // Beside a tree there are triangles only where they touch something.
+        // With a tree, the only listed triangles are those that touch something.
         let has_triangles = self.geometry.is_none() || !contacts.apart().is_empty();
         let (corner_users, faces_of_solids) = if has_triangles {
             (count_corner_users(scene), faces_of_solids(scene))
@@ -312,7 +313,7 @@ impl<R: Real> Plan<R> {
         Some((geometry, self.primitives.len()))
     }
 
-    /// How many primitives have an end.
+    /// The number of bounded primitives.
     pub fn bounded(&self) -> usize {
         let in_tree = self.geometry.as_ref().map_or(0, |all| all.len());
         self.primitives.bounded() + in_tree

@@ -1,4 +1,4 @@
-//! A mesh, ready to be traced: its triangles relative to its own middle, and the way to them.
+//! A mesh prepared for tracing: its triangles relative to its own middle, and their tree.
 
 use std::any::Any;
 use std::ops::Range;
@@ -20,52 +20,52 @@ use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Prim
 use crate::scene::Mesh;
 use crate::simd::{Real, Vec3};
 
-/// The triangles of a mesh, turned and scaled as they are in the world and relative to the middle of the
-/// box around them: where the mesh is costs no precision, and moving it changes none of this.
+/// The triangles of a mesh, rotated and scaled as in the world and relative to the middle of their bounding box:
+/// the mesh's position costs no precision, and moving the mesh changes none of this.
 #[derive(Clone, Debug)]
 pub struct PackedMesh<R> {
-    /// Its triangles; those without an area are left out.
+    /// The triangles; those without an area are left out.
     pub triangles: Vec<PackedTriangle<R>>,
-    /// Their normals where they are shaded as one curved surface; none if they are flat.
+    /// The corner normals of each triangle, if the mesh is shaded as a curved surface; otherwise empty.
     pub smooth: Vec<CornerNormals<R>>,
-    /// Whether some of them look flat.
+    /// Whether any of the triangles look flat.
     pub has_flat: bool,
-    /// How far above them rays that go on from there may start.
+    /// Upper bound of the height above the triangles at which secondary rays start.
     pub lift: R,
-    /// The length of their longest edge.
+    /// The length of the longest edge.
     pub longest: R,
-    /// The way to them.
+    /// The tree over the triangles.
     pub bvh: Bvh<R>,
-    /// How far they reach from the middle of the box around them.
+    /// The greatest distance of a corner from the middle of the bounding box.
     pub reach: R,
-    /// The corners of each of them in its source; none where they do not stand in the order of the mesh before it was
-    /// turned.
+    /// For each triangle, the indices of its corners in the source; empty if the triangles are not in the order
+    /// that they have without rotation.
     faces: Arc<[[u32; 3]]>,
-    /// For each of them the first of those that it hangs together with; none if all do.
+    /// For each triangle, the first one of its connected component; empty if there is only one component.
     things: Arc<[u32]>,
-    /// Whether it has an inside; its normals then point away from there, however its file winds them.
+    /// Whether the mesh has an inside; its normals then point outwards, however the file winds its faces.
     is_solid: bool,
-    /// Whether its file winds them the other way.
+    /// Whether the file winds the faces inside out.
     is_inside_out: bool,
-    /// The middle, from the origin of the mesh.
+    /// The middle of the bounding box relative to the mesh's origin.
     middle: DVec3,
     turn: DMat3,
-    /// What it was made of.
+    /// What the mesh was packed from.
     pub key: MeshKey,
-    /// Kept, so that nothing else is where it is.
+    /// Kept alive so that nothing else gets its address.
     source: Arc<Triangles>,
 }
 
-/// What a packed mesh is made of, wherever that is: where its faces are kept, how they are turned and scaled, and up to
-/// which angle they are smooth, bit by bit.
+/// What a packed mesh is made from, independent of its position: the address of its faces, and the bits of its
+/// rotation, scale and smoothing angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshKey(LevelKey, [u64; 3]);
 
-/// The same, however they are turned.
+/// The same without the rotation.
 pub type LevelKey = (usize, [u64; 3], u64);
 
 impl MeshKey {
-    /// That of a mesh.
+    /// The key of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let address = Arc::as_ptr(mesh.source.triangles()).addr();
         let bits = |parts: DVec3| parts.to_array().map(f64::to_bits);
@@ -73,17 +73,17 @@ impl MeshKey {
         Self(level, bits(mesh.rotation))
     }
 
-    /// That of the mesh before it was turned.
+    /// The key of the mesh without rotation.
     pub fn level(&self) -> LevelKey {
         self.0
     }
 }
 
-/// Where the points of a mesh are.
+/// The rotated and scaled points of a mesh.
 struct Points {
-    /// From their middle.
+    /// Relative to `middle`.
     points: Vec<DVec3>,
-    /// That of the box around its corners, from the origin of the mesh.
+    /// The middle of the box around the corners, relative to the mesh's origin.
     middle: DVec3,
 }
 
@@ -104,24 +104,24 @@ impl Points {
     }
 }
 
-/// A mesh in its place.
+/// A mesh at its position.
 #[derive(Clone, Debug)]
 pub struct MeshInstance<R> {
-    /// What is there; several may share it.
+    /// The packed mesh, which several instances may share.
     pub mesh: Arc<PackedMesh<R>>,
-    /// Where its middle is.
+    /// The position of the mesh's middle.
     pub centre: Vec3<R>,
     /// Index of its material.
     pub material: u32,
-    /// Its place in the scene's list.
+    /// Its index in the scene's list.
     pub place: usize,
     /// The number of its first triangle, counted from that of the geometry's first primitive.
     pub first: usize,
 }
 
 impl PackedMesh<f64> {
-    /// Packs a mesh: what it is is decided in double precision, whatever it is traced in; and before it is turned, so that
-    /// it stays the same when it is, see [`Self::turned`].
+    /// Packs a mesh. Its properties are determined in double precision, whichever precision traces it, and without
+    /// rotation, so that they do not change when it is rotated, see [`Self::turned`].
     pub fn new(mesh: &Mesh) -> Self {
         if mesh.rotation == DVec3::ZERO {
             return Self::of(mesh);
@@ -132,7 +132,7 @@ impl PackedMesh<f64> {
         };
         let turned = Self::of(&level).turned(mesh);
         turned.unwrap_or_else(|| Self {
-            // Its faces may stand in another order.
+            // The faces may be in another order.
             faces: [].into(),
             ..Self::of(mesh)
         })
@@ -142,18 +142,18 @@ impl PackedMesh<f64> {
         let turn = mesh.turn();
         let Points { points, middle } = Points::of(mesh.source.triangles(), turn);
         let is_mirrored = turn.determinant() < 0.0;
-        // Clockwise seen from outside, as it was before.
+        // Clockwise seen from outside, as in the source.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let corners = |face: [u32; 3]| face.map(|point| points[point as usize]);
         let packed = |face: &[u32; 3]| PackedTriangle::of_mesh(corners(*face));
         let faces = mesh.source.triangles().faces().iter().map(face);
         let faces: Vec<_> = faces.filter(|face| packed(face).is_some()).collect();
-        // The tree first: to build it takes more room than anything else.
+        // The tree first, since building it takes more memory than anything else.
         let mut bvh = Bvh::new(faces.len(), |number| Member {
             bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
             thickness: f64::INFINITY,
         });
-        // What is met together stands together.
+        // Triangles that are hit together are stored together.
         let order = bvh.renumber().into_iter();
         let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
         let corners_of = |face: u32| corners(faces[face as usize]).map(Vec3::from_dvec3);
@@ -191,7 +191,8 @@ impl PackedMesh<f64> {
         }
     }
 
-    /// The same in another precision, or this one itself: what was decided of it stays, and its tree is shared.
+    /// Returns the mesh in another precision, or itself if it has that one: its properties stay, and its tree is
+    /// shared.
     pub fn in_precision<R: Real>(this: &Arc<Self>) -> Arc<PackedMesh<R>> {
         let own: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
         own.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
@@ -208,8 +209,9 @@ impl PackedMesh<f64> {
 }
 
 impl<R: Real> PackedMesh<R> {
-    /// The same mesh, turned otherwise: what hangs together, how thick it is and what stands beside what need not be found
-    /// out again. `None` where that is not known, or rounding leaves a face without an area.
+    /// Returns the same mesh with another rotation, without determining its components, thickness and tree again.
+    /// Returns `None` if the original order of its faces is not known, or if rounding leaves a face without an
+    /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
         let turn = mesh.turn();
         let Points { points, middle } = Points::of(&self.source, turn);
@@ -239,7 +241,7 @@ impl<R: Real> PackedMesh<R> {
         })
     }
 
-    /// The same mesh, with its triangles elsewhere.
+    /// The same mesh with other corners of its triangles.
     fn with<S: Real>(
         &self,
         (triangles, smooth): (Vec<PackedTriangle<S>>, Vec<CornerNormals<S>>),
@@ -264,24 +266,25 @@ impl<R: Real> PackedMesh<R> {
         }
     }
 
-    /// The first of its faces that one of this number hangs together with.
+    /// The first face of the connected component of `face`.
     pub fn thing_of(&self, face: usize) -> usize {
         self.things.get(face).map_or(0, |&first| first as usize)
     }
 
-    /// Where a point of its source is, from its middle: exactly where corners of its triangles are.
+    /// The position of a point of the source relative to the middle, with exactly the rounding of the triangles'
+    /// corners.
     pub fn place(&self, point: DVec3) -> Vec3<R> {
         Vec3::from_dvec3(self.turn * point - self.middle)
     }
 
-    /// Where its middle is in the world, if it is that of `mesh`.
+    /// The position of the mesh's middle in the world, given the mesh that it was packed from.
     pub fn middle_of(&self, mesh: &Mesh) -> DVec3 {
         mesh.position + self.middle
     }
 }
 
-/// Sets how thick each of the triangles is, whose corners have these numbers, that are in this tree and have these
-/// borders, and how thick is what is in its boxes.
+/// Sets the thickness and the tip of each triangle, given their corner numbers, tree and borders, and updates the
+/// thicknesses in the tree.
 pub fn measure(
     triangles: &mut [PackedTriangle<f64>],
     faces: &[[u32; 3]],
@@ -297,7 +300,7 @@ pub fn measure(
     bvh.refit(|number| member(&triangles[number]));
 }
 
-/// The normals of faces that are shaded as one curved surface.
+/// The normals of faces that are shaded as one curved surface; empty if the mesh is flat.
 fn normals_of(mesh: &Mesh, triangles: &[PackedTriangle<f64>]) -> Vec<CornerNormals<f64>> {
     if mesh.smooth > 0.0 {
         corner_normals(triangles, mesh.smooth)
@@ -306,19 +309,19 @@ fn normals_of(mesh: &Mesh, triangles: &[PackedTriangle<f64>]) -> Vec<CornerNorma
     }
 }
 
-/// Whether some faces with these normals look flat.
+/// Returns whether any faces with these normals look flat.
 fn has_flat<R: Real>(smooth: &[CornerNormals<R>]) -> bool {
     smooth.is_empty() || smooth.iter().any(CornerNormals::are_alike)
 }
 
-/// How far the corners of triangles are from a point, at most.
+/// Upper bound of the distance of the triangles' corners from a point.
 fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
     let corners = triangles.iter().flat_map(|triangle| triangle.corners);
     let farthest = corners.map(|corner| (corner - from).length());
     farthest.fold(R::ZERO, R::max) * R::from_f64(1.0 + CAUTION)
 }
 
-/// The longest edge of triangles.
+/// The longest edge of the triangles.
 fn longest<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
     let edges = triangles.iter().map(|triangle| triangle.longest);
     edges.fold(R::ZERO, R::max)
@@ -333,17 +336,17 @@ pub fn member(triangle: &PackedTriangle<f64>) -> Member<f64> {
 }
 
 impl<R: Real> MeshInstance<R> {
-    /// The numbers of its triangles, counted from that of the geometry's first primitive.
+    /// The numbers of its triangles, counted from the geometry's first primitive.
     pub fn numbers(&self) -> Range<usize> {
         self.first..self.first + self.mesh.triangles.len()
     }
 
-    /// Whether it has an inside: what is against its faces from outside is seen from nowhere.
+    /// Returns whether it has an inside: what touches its faces from outside cannot be seen.
     pub fn is_solid(&self) -> bool {
         self.mesh.is_solid
     }
 
-    /// Whether it has an inside, and a point is not there.
+    /// Returns whether the mesh has an inside and the point is not in it.
     pub fn is_seen_from_outside(&self, point: Vec3<R>) -> bool {
         let PackedMesh { triangles, bvh, .. } = &*self.mesh;
         self.mesh.is_solid && is_outside(triangles, bvh, point - self.centre)
@@ -352,7 +355,7 @@ impl<R: Real> MeshInstance<R> {
     /// The mesh as a member of the tree over all objects.
     pub fn member(&self) -> Member<R> {
         let BoundingBox { low, high } = self.mesh.bvh.bounds;
-        // A rounding of each sum.
+        // One rounding per sum.
         let size = self.centre.max_abs() + low.max_abs().max(high.max_abs());
         let slack = Vec3::splat(size * R::UNIT_ROUNDOFF * R::from_f64(2.0));
         Member {

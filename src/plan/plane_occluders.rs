@@ -1,11 +1,11 @@
-//! Planes that settle once for all points which lights they hide.
+//! Planes that block a light for everything visible or for nothing.
 
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
 use crate::scene::{Outline, PlanePiece, Projection, Scene};
 
-/// A plane that is seen from one side.
+/// A plane of which only one side can be seen.
 pub struct PlaneOccluder {
     piece: PlanePiece,
     /// Whether its normal points away from the eye.
@@ -13,16 +13,16 @@ pub struct PlaneOccluder {
 }
 
 impl PlaneOccluder {
-    /// Above zero on the eye's side, below it behind the plane, zero on it.
+    /// Returns a positive number on the eye's side, a negative one behind the plane, zero on it.
     pub fn side(&self, point: DVec3) -> f64 {
         let height = self.piece.height(point);
         if self.is_turned { -height } else { height }
     }
 }
 
-/// The planes as occluders that hide every light behind them from everything that the eye can reach,
-/// and block no other light; `None` where planes have to be tested ray by ray: for parallel rays,
-/// which start on both sides, for an eye on a plane, and for formulas whose failures shall show.
+/// Returns the planes as occluders that hide every light behind them from everything that the eye can reach and
+/// block no other light. Returns `None` if planes must be tested per ray: for parallel rays, which start on both
+/// sides, for an eye on a plane, and for formulas whose failures must show.
 pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
     let is_parallel = request.projection_of(camera) == Projection::Orthographic;

@@ -1,4 +1,4 @@
-//! Which real type a scene needs: single precision wherever its errors stay invisible.
+//! The real type that a scene needs: single precision wherever its errors stay invisible.
 
 use super::closeness::{has_layers, has_twins, is_at_border, is_just_above, is_low};
 use super::request::{Model, RenderRequest};
@@ -7,42 +7,44 @@ use crate::scene::{Object, Precision, Projection, Scene, Shape, unit};
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
 const MAX_DISTANCE_PER_RADIUS: f64 = 5e3;
-/// Largest ratio of the scene's extent to its smallest feature in single precision: edges are then off by a thousandth
-/// of the feature, a tenth of a pixel where that is a hundred of them large.
+/// Largest ratio of the scene's extent to its smallest feature in single precision: edges are then off by a
+/// thousandth of the feature, which is a tenth of a pixel for a feature of a hundred pixels.
 const MAX_EXTENT_PER_FEATURE: f64 = 1e4;
-/// How many times as small features may be where what rounding may decide is traced again: of 400 random scenes with
-/// features down to a millionth this lets 119 into single precision, and no pixel of them is off.
+/// Factor by which features may be smaller if samples that rounding may decide are traced again: of 400 random
+/// scenes with features down to a millionth, this lets 119 into single precision, and no pixel of them is off.
 const SMALLER_WHEN_FILTERED: f64 = 100.0;
-/// Smallest extent of a scene in single precision, in which squares of much smaller numbers are nothing.
+/// Smallest extent of a scene in single precision: squares of much smaller numbers underflow to zero.
 const MIN_EXTENT: f64 = 1e-12;
 
-/// Cosine between the middle ray and a plane's normal from which on the plane is looked at, and not along.
+/// Cosine between the camera's direction and a plane's normal above which the camera looks at the plane, not along
+/// it.
 const FACING: f64 = 0.1;
-/// Largest ratio of the distance of what parallel rays show to the height of their picture in single
-/// precision: 1/16 of a pixel, of a thousand.
+/// Largest ratio of the distance of visible things to the height of the picture for parallel rays in single
+/// precision: an error of 1/16 of a pixel in a picture that is a thousand pixels high.
 const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
 
-/// Longest lens, in pixels from the eye to its picture, in single precision: the last digit of a ray is then 1/500 of a
-/// pixel. At 360,000 it is 8 pixels of 40,000 that a triangle gets wrong, and clean edges are off by 8 levels; at 800,000
-/// by 19.
+/// Longest lens in single precision, as the distance from the eye to the image plane in pixels: the last digit of a
+/// ray is then 1/500 of a pixel. At 360,000, 8 of 40,000 pixels of a triangle are wrong and clean edges are off by
+/// 8 levels; at 800,000, by 19 levels.
 const MAX_DISTANCE_IN_PIXELS: f64 = 3e4;
 
-/// Most things that single precision can number.
+/// Largest number of things for which single precision can represent each number.
 const MAX_NUMBER: usize = 1 << 24;
 
-/// Most primitives that are planned in both precisions: so many take 200 MB then, instead of 100, and a fifth longer to
-/// open. A million faces, of which few are met by rays that have met their neighbours, take as long in double precision
-/// alone, and two thirds of the room.
+/// Maximum number of primitives that are planned in both precisions: they then take 200 MB instead of 100, and a
+/// fifth longer to open. A million faces, few of which are hit by rays that have also hit their neighbours, take as
+/// long in double precision alone, and two thirds of the memory.
 const MOST_FILTERED: usize = 300_000;
-/// Up to so many objects have so few edges that rounding hardly shows: of 1,000 random scenes at 200 × 200 pixels, not one
-/// pixel is off by more than a step, where 3 of 10 such scenes with meshes have some. To trace again what it may decide
-/// takes them 1.4 times as long.
+/// Number of objects up to which there are so few edges that rounding hardly shows: of 1,000 such random scenes at
+/// 200 × 200 pixels, not one pixel is off by more than a step, whereas 3 of 10 such scenes with meshes have some.
+/// Tracing doubtful samples again makes them take 1.4 times as long.
 const FEWEST_FILTERED: usize = 32;
-/// Most pixels that are not filtered for of so few objects, of which rounding decides some then: of the demo one in three
-/// million, of mirror balls two in a million. Larger pictures nobody waits for in the window; 3840 × 2160 is none.
+/// Number of pixels up to which pictures of so few objects are not filtered. Rounding decides some of these pixels:
+/// one in three million in the demo, two in a million with mirror balls. Nobody waits for larger pictures in the
+/// window; 3840 × 2160 is below the limit.
 const MOST_UNFILTERED: u64 = 10_000_000;
 
-/// Whether a picture is traced in double precision.
+/// Returns whether a picture is traced in double precision.
 pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
     let is_needed = || match request.precision {
         Precision::Auto => needs_double(scene, request) || is_too_much_twice(scene, request),
@@ -52,23 +54,25 @@ pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
     is_uncountable(scene) || is_needed()
 }
 
-/// Whether what rounding may decide in a picture in single precision is traced again in double precision.
+/// Returns whether samples of a single-precision picture that rounding may decide are traced again in double
+/// precision.
 pub fn is_filtered(scene: &Scene, request: &RenderRequest) -> bool {
     is_rounding_seen(scene, request) && primitives(scene) <= MOST_FILTERED
 }
 
-/// Whether things may be smaller and farther, since what rounding may decide is traced again. The size of the picture does
-/// not matter: its parts would differ from it.
+/// Returns whether features may be smaller and farther away because doubtful samples are traced again. Independent
+/// of the picture's size, since otherwise parts of a picture would differ from the whole.
 pub fn is_fine(scene: &Scene, request: &RenderRequest) -> bool {
     is_filtered(scene, request) && has_many_edges(scene)
 }
 
-/// Whether there is so much in a scene that all of it is traced in double precision, rather than what rounding may decide.
+/// Returns whether a scene has too many primitives for both precisions, so that all of it is traced in double
+/// precision.
 pub fn is_too_much_twice(scene: &Scene, request: &RenderRequest) -> bool {
     is_rounding_seen(scene, request) && primitives(scene) > MOST_FILTERED
 }
 
-/// Whether rounding to single precision is seen on edges, where nothing is done about it.
+/// Returns whether rounding to single precision would show on edges if nothing were done about it.
 fn is_rounding_seen(scene: &Scene, request: &RenderRequest) -> bool {
     request.precision == Precision::Auto
         && matches!(request.model, Model::Needed | Model::Unculled)
@@ -81,18 +85,18 @@ fn has_many_edges(scene: &Scene) -> bool {
     visible().count() > FEWEST_FILTERED || visible().any(|object| object.faces() > 0)
 }
 
-/// How many objects and faces are visible.
+/// The number of visible objects and faces.
 fn primitives(scene: &Scene) -> usize {
     let visible = scene.visible_objects();
     visible.map(|object| object.faces() + 1).sum()
 }
 
-/// Whether there are more things than single precision can number.
+/// Returns whether there are more things than single precision can number.
 fn is_uncountable(scene: &Scene) -> bool {
     scene.objects.len() + scene.lights.len() + scene.faces() >= MAX_NUMBER
 }
 
-/// Whether single precision would show in the picture.
+/// Returns whether the errors of single precision would show in the picture.
 pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     let is_out_of_sight = match request.projection_of(&scene.camera) {
         Projection::Orthographic => is_far_in_parallel(scene),
@@ -114,11 +118,11 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
         return true;
     }
     let is_fine = is_fine(scene, request);
-    // Parallel rays come from a window.
+    // Parallel rays start from a window, not from a point.
     let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
     let point = Some(eye).filter(|_| is_perspective);
     let size = (high - low).length();
-    // Samples that look for an edge inside of a pixel are not filtered, and layers would be seen in all of them.
+    // Samples that search for an edge inside a pixel are not filtered, and layers would show in all of them.
     if has_layers(scene, (centre, extent)) || !is_fine && is_at_border(scene, point, size) {
         return true;
     }
@@ -142,7 +146,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     })
 }
 
-/// How far the farthest plane is that shadows are seen on.
+/// The distance of the farthest plane that the camera looks at, on which shadows would show.
 fn farthest_wall(scene: &Scene) -> f64 {
     let (eye, direction) = (
         scene.camera.position,
@@ -158,13 +162,13 @@ fn farthest_wall(scene: &Scene) -> f64 {
     distances.fold(0.0, f64::max)
 }
 
-/// Whether rays that run side by side come from too far.
+/// Returns whether parallel rays come from too far away.
 fn is_far_in_parallel(scene: &Scene) -> bool {
     let camera = &scene.camera;
     let direction = unit(camera.look_at).unwrap_or_default();
     let distance = |object: &Object| match object.shape.bounds() {
         Some((low, high)) => (low * 0.5 + high * 0.5 - camera.position).length(),
-        // Where the middle of the picture meets it.
+        // Where the ray through the middle of the picture hits it.
         None => object.shape.plane_piece().map_or(0.0, |piece| {
             let towards = direction.dot(piece.normal);
             let distance = piece.height(camera.position) / -towards;
@@ -209,7 +213,7 @@ mod tests {
             }
         };
         assert!(!wants(&wall(1e4)) && wants(&wall(1e6)));
-        // Nothing is lit there.
+        // Without lights, no shadow can show on the wall.
         assert!(!wants(&|scene| {
             wall(1e6)(scene);
             scene.lights.clear();

@@ -1,20 +1,20 @@
-//! Where rays start that go on from a hit.
+//! Where secondary rays start.
 
 use crate::scene::{RayOffset, Scene};
 use crate::simd::Real;
 
-/// [`RayOffset`] with its lengths in the scene's units.
+/// [`RayOffset`] with lengths in scene units.
 #[derive(Clone, Copy, Debug)]
 pub enum RayOrigin<R> {
-    /// At the hit, ignoring the own primitive.
+    /// At the hit, ignoring the primitive that was hit.
     AtHit,
-    /// So far along the new ray.
+    /// This far along the new ray.
     Along(R),
     /// 256 roundings along the normal.
     Roundings,
 }
 
-/// Where they start in a scene.
+/// Returns where secondary rays start in a scene.
 pub fn ray_origin<R: Real>(scene: &Scene, offset: RayOffset) -> RayOrigin<R> {
     let along = |distance| RayOrigin::Along(R::from_f64(distance));
     match offset {

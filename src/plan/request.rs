@@ -1,54 +1,54 @@
-//! Which picture of a scene is asked for.
+//! The picture of a scene that is requested.
 
 use std::ops::Range;
 
 use crate::scene::{Accelerator, Aspect, Camera, Methods, Precision, Projection, Sampling, Scene};
 use crate::simd::Level;
 
-/// Which picture of a scene is asked for.
+/// The picture of a scene that is requested.
 #[derive(Clone, Copy, Debug)]
 pub struct RenderRequest {
     /// Width in pixels, ≥ 1.
     pub width: u32,
     /// Height in pixels, ≥ 1.
     pub height: u32,
-    /// Takes the place of the camera's own projection.
+    /// Overrides the camera's own projection.
     pub projection: Option<Projection>,
     /// The real type of the kernel.
     pub precision: Precision,
     /// The formulas of the kernel.
     pub methods: Methods,
-    /// How edges are smoothed.
+    /// How edges are antialiased.
     pub sampling: Sampling,
-    /// How primitives are found.
+    /// How the primitives that a ray hits are found.
     pub accelerator: Accelerator,
-    /// Whether parts of the model that the scene does not need are left out.
+    /// Whether parts of the image model that the scene does not need are left out.
     pub model: Model,
-    /// What of the light is shown, where that is not the scene's to say; see [`Aspect::of`].
+    /// The aspect of the light to show, where the scene alone does not determine it; see [`Aspect::of`].
     pub aspect: Aspect,
     /// The part of the picture that is traced, in whole tiles; all of it if `None`.
     pub region: Option<Region>,
-    /// The lanes of the kernel; the widest that there are if `None`.
+    /// The SIMD level of the kernel; the widest available if `None`.
     pub level: Option<Level>,
 }
 
 impl RenderRequest {
-    /// How many pixels the picture has.
+    /// The number of pixels of the picture.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// How the picture is projected.
+    /// The projection of the picture.
     pub fn projection_of(&self, camera: &Camera) -> Projection {
         self.projection.unwrap_or(camera.projection)
     }
 
-    /// The still picture that the scene itself asks for.
+    /// The still picture that the scene's own settings describe.
     pub fn still(scene: &Scene) -> Self {
         Self::of(scene, scene.render.width, scene.render.height)
     }
 
-    /// The picture that the scene itself asks for, in another size.
+    /// The same picture in another size.
     pub fn of(scene: &Scene, width: u32, height: u32) -> Self {
         let render = &scene.render;
         Self {
@@ -60,7 +60,7 @@ impl RenderRequest {
         }
     }
 
-    /// A quick picture of another size, sampled at the pixels' centres.
+    /// A quick picture of a given size, sampled at pixel centres.
     pub fn sized(width: u32, height: u32) -> Self {
         Self {
             width,
@@ -81,19 +81,19 @@ impl RenderRequest {
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// First column, and the one behind the last.
+    /// First column, and one past the last.
     pub columns: (usize, usize),
-    /// First row, and the one behind the last.
+    /// First row, and one past the last.
     pub rows: (usize, usize),
 }
 
 impl Region {
-    /// How many pixels it has.
+    /// The number of pixels.
     pub fn pixels(self) -> usize {
         (self.columns.1 - self.columns.0) * (self.rows.1 - self.rows.0)
     }
 
-    /// Whether some pixel of these columns and rows is in it.
+    /// Returns whether any pixel of these columns and rows is in the region.
     pub fn meets(&self, columns: &Range<usize>, rows: &Range<usize>) -> bool {
         let (left, right) = self.columns;
         let (top, bottom) = self.rows;
@@ -101,17 +101,17 @@ impl Region {
     }
 }
 
-/// How much of the image model is computed. All show the same picture.
+/// How much of the image model is computed. All variants show the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Model {
-    /// What the scene needs.
+    /// Only what the scene needs.
     #[default]
     Needed,
-    /// What the scene needs, in the scene's own coordinates and not in those around its middle: what rebasing is
-    /// measured against.
+    /// What the scene needs, in the scene's own coordinates instead of those relative to its middle: the baseline
+    /// for measuring rebasing.
     Unrebased,
-    /// What the scene needs, with every primitive tested for every ray: what culling is measured against.
+    /// What the scene needs, with every primitive tested for every ray: the baseline for measuring culling.
     Unculled,
-    /// Everything, needed or not, and unculled: what the rules of the plan are measured against.
+    /// Everything, needed or not, and without culling: the baseline for measuring the rules of the plan.
     Everything,
 }

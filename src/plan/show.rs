@@ -1,37 +1,37 @@
-//! What the kernels write in place of the light.
+//! What the kernels write as colour.
 
 use crate::scene::{Aspect, Camera, Projection, Scene};
 use crate::simd::Real;
 
-/// What the kernels write; see [`Aspect`].
+/// What the kernels write as colour; see [`Aspect`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Show<R> {
-    /// The light, as the scene has it.
+    /// The light of the scene.
     Light,
-    /// Normals, turned to the viewer: each axis from -1 to 1 as a channel from 0 to 1.
+    /// Normals facing the viewer: each axis from -1 to 1 as a channel from 0 to 1.
     Normals,
-    /// Distances: 1 at `nearest`, and so much less for each unit of length behind that.
+    /// Distances: 1 at `nearest`, decreasing by `per_length` per unit of length.
     Depth {
-        /// Where the scene can begin.
+        /// Distance at which the scene can begin.
         nearest: R,
-        /// One over how far behind that it can end.
+        /// One over the distance from there to where the scene can end.
         per_length: R,
     },
-    /// For each light that reaches a point this much.
+    /// This value for each light that reaches the point.
     Shadows(R),
-    /// What mirrors add to what they are seen in.
+    /// The light that mirrors add where they are seen.
     Mirrors,
-    /// The rays of each tile, for each of its pixels.
+    /// The number of rays per pixel, averaged over each tile.
     Cost,
-    /// Samples that are traced again, in white, and the others darkened.
+    /// The picture darkened, with the samples that are traced again in white.
     Again,
 }
 
-/// How deep a scene without any end is shown, in distances from the eye to the origin.
+/// Depth range of a scene without bounded objects, in distances from the eye to the origin.
 const DEEP: f64 = 4.0;
 
 impl<R: Real> Show<R> {
-    /// What is to be written for an aspect of a scene.
+    /// Returns what the kernels write for an aspect of a scene.
     pub fn new(aspect: Aspect, scene: &Scene, projection: Projection) -> Self {
         match aspect {
             Aspect::Normals => Self::Normals,
@@ -60,7 +60,7 @@ impl<R: Real> Show<R> {
     }
 }
 
-/// Between which distances from the camera a scene is, by the ball around it.
+/// The least and greatest distance of the scene from the camera, by the ball around its bounded objects.
 fn range(scene: &Scene, projection: Projection) -> (f64, f64) {
     let Camera { position, .. } = scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {

@@ -9,15 +9,16 @@ use rayon::iter::{
 use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
 use crate::simd::{Real, Vec3};
 
-/// At corners where more faces than this meet, they stay flat: each is held against all others.
+/// Number of faces at a corner above which they stay flat there, since each is compared with all others.
 const MOST_AROUND: usize = 1024;
 
-/// By how much the cosine between faces must be above that of the angle, or they stay flat: several roundings of single
-/// precision, which files have their corners in, so that of faces which meet at just that angle none is smooth by rounding.
+/// Margin by which the cosine between two faces must exceed that of the limiting angle for them to be smooth:
+/// several roundings of single precision, in which files store corners, so that faces that meet at exactly that
+/// angle are never smoothed because of rounding.
 const JUST: f64 = 4e-6;
 
-/// Normals at the corners of each triangle: the mean of its own and of those that turn from it by less than
-/// `degrees`, by the angles that they have there.
+/// Returns the normals at the corners of each triangle: the mean of the normals of all faces there that differ from
+/// the triangle's own by less than `degrees`, weighted by their angles at the corner.
 ///
 /// Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", Journal of Graphics Tools 3(1),
 /// 1998.
@@ -50,7 +51,7 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
                 .filter(|weighted| weighted.is_finite())
                 .sum::<DVec3>();
             let mean = Vec3::from_dvec3(sum.try_normalize().unwrap_or(own));
-            // On the side of its own that the face is on.
+            // Back on the side of the face's own normal.
             if is_turned(index) { -mean } else { mean }
         });
         CornerNormals {
@@ -61,8 +62,8 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
     normals.collect()
 }
 
-/// Which faces are to be turned so that neighbours go along their common edge in opposite directions, and have their
-/// normals on one side: files do not say them all in one order. Empty where none is.
+/// Returns the faces that must be flipped so that neighbours traverse their common edge in opposite directions and
+/// have their normals on the same side: files do not always wind all faces the same way. Empty if there are none.
 fn turned_faces(faces: &[[u32; 3]], around: &Around) -> Vec<bool> {
     let beside = |face: usize| (0..3).filter_map(move |edge| neighbour(faces, around, face, edge));
     let all = (0..faces.len()).into_par_iter();
@@ -88,8 +89,8 @@ fn turned_faces(faces: &[[u32; 3]], around: &Around) -> Vec<bool> {
     turned.into_iter().map(|turn| turn == Some(true)).collect()
 }
 
-/// The face on the other side of an edge of a face, and whether it goes along it in the same direction; `None` if there
-/// is none or more than one, and at a corner where too many meet.
+/// The face on the other side of an edge, and whether it traverses the edge in the same direction; `None` if there
+/// is no such face or more than one, and at a corner where too many faces meet.
 fn neighbour(
     faces: &[[u32; 3]],
     around: &Around,
@@ -111,8 +112,8 @@ fn neighbour(
     only.filter(|_| beside.next().is_none())
 }
 
-/// How far points of the faces are lifted at most onto the surface that they stand for, whichever side of it is seen,
-/// see [`crate::primitive::Curved::bend`].
+/// Upper bound of the distance by which points of the faces are lifted onto the curved surface, whichever side is
+/// seen, see [`crate::primitive::Curved::bend`].
 pub fn largest_lift<R: Real>(triangles: &[PackedTriangle<R>], smooth: &[CornerNormals<R>]) -> R {
     let faces = triangles.iter().zip(smooth);
     let lifts = faces.flat_map(|(triangle, smooth)| {
@@ -139,11 +140,11 @@ fn curvature(triangle: &PackedTriangle<f64>, normals: &[Vec3<f64>; 3]) -> f64 {
     along(0, 1).max(along(1, 2)).max(along(2, 0))
 }
 
-/// For each corner the faces that meet there.
+/// The faces that meet at each corner.
 struct Around {
-    /// Where those of each corner begin, and where the last ones end.
+    /// Start of each corner's faces in `faces`, and the end of the last ones.
     firsts: Vec<u32>,
-    /// Faces, and which of their corners it is.
+    /// Faces, each with the index (0–2) that the corner has in it.
     faces: Vec<(u32, u8)>,
 }
 
@@ -183,7 +184,7 @@ mod tests {
     use super::*;
     use crate::primitive::{Curved, Primitive as _, Ray};
 
-    /// The faces of an octahedron, of which every second goes the other way around.
+    /// An octahedron of which every second face is wound the other way.
     #[test]
     fn faces_in_any_order_have_the_normals_of_those_in_one() {
         let mut faces = Vec::new();
@@ -251,7 +252,7 @@ mod tests {
                 *farthest = farthest.max((bent.point - flat.point).length());
             }
         }
-        // From one side it is a roof, and lifted; from the other it is a valley.
+        // From one side it is a roof, and is lifted; from the other it is a valley, and is not.
         assert!(farthest[0].max(farthest[1]) > 0.1, "{farthest:?}");
         assert!(farthest[0].max(farthest[1]) <= most, "{farthest:?} {most}");
         assert!(farthest[0].min(farthest[1]) < 1e-9, "{farthest:?}");

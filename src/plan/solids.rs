@@ -1,5 +1,5 @@
-//! Closed convex solids made of triangles: seen from outside, the faces that are turned away are
-//! behind others, and need no test.
+//! Closed convex solids made of triangles: seen from outside, the faces that are turned away are hidden by others
+//! and need no test.
 
 use std::collections::{HashMap, HashSet};
 
@@ -11,17 +11,17 @@ use crate::primitive::{Corner, PackedTriangle, corner};
 use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
-/// Most faces of a solid: its corners are held against each of its faces.
+/// Maximum number of faces of a solid, whose corners are all compared with each face.
 const MOST_FACES: usize = 256;
-/// Share of a solid's size by which a point must be before or behind a face to count as such: more
-/// than single precision can shift a ray.
+/// Distance by which a point must be in front of or behind a face to count as such, as a share of the solid's size:
+/// more than single precision can shift a ray.
 const MARGIN: f64 = 1e-5;
 
-/// Triangles with corners that are clockwise seen from outside, and the solids that they make.
+/// Triangles that are clockwise seen from outside, and the solids that they form.
 #[derive(Clone, Debug, Default)]
 pub struct Solids {
     triangles: Vec<[DVec3; 3]>,
-    /// For each solid its faces, by their places in the list.
+    /// For each solid, the indices of its faces in `triangles`.
     solids: Vec<Vec<usize>>,
 }
 
@@ -42,9 +42,8 @@ impl Solids {
         Self { triangles, solids }
     }
 
-    /// For each triangle, whether no ray that comes from `point`, or arrives there, has to be
-    /// tested for it: it belongs to a solid, the point is outside, and a face that is turned
-    /// towards the point is hit as well.
+    /// Returns for each triangle whether rays that start or end at `point` can skip it: it belongs to a solid, the
+    /// point is outside, and such a ray also hits a face that is turned towards the point.
     pub fn turned_away(&self, point: DVec3) -> Vec<bool> {
         let mut is_away = vec![false; self.triangles.len()];
         for faces in &self.solids {
@@ -63,7 +62,7 @@ impl Solids {
     }
 }
 
-/// The corners of the faces of all solids that are made of the visible triangles of a scene.
+/// The corners of the faces of all solids formed by visible triangles of a scene.
 pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
     let visible = scene.visible_objects();
     let triangles = visible.filter_map(|object| match &object.shape {
@@ -75,7 +74,7 @@ pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
     faces.map(|face| triangles[face].map(corner)).collect()
 }
 
-/// Unit normal outwards, distance from the origin along it, and what counts as on the face.
+/// The unit normal outwards, the distance from the origin along it, and the tolerance for points on the face.
 fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
     let across = (*c - *a).cross(*b - *a);
     let normal = across.try_normalize().unwrap_or(across);
@@ -83,7 +82,7 @@ fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
     (normal, normal.dot(*a), MARGIN * size)
 }
 
-/// Triangles that hang together by common corners.
+/// Groups triangles that are connected by common corners.
 fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
     let mut numbers = HashMap::new();
     let mut number = |point: DVec3| {
@@ -96,14 +95,14 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
         .collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
     for (index, part) in parts(&points).into_iter().enumerate() {
-        // Parts are numbered as they come.
+        // Components are numbered in order of their first triangle.
         found.resize_with(found.len().max(part as usize + 1), Vec::new);
         found[part as usize].push(index);
     }
     found
 }
 
-/// Whether every corner is on or behind every face.
+/// Returns whether every corner is on or behind every face.
 fn is_convex(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
     faces.iter().all(|&face| {
         let (normal, offset, margin) = plane(&triangles[face]);

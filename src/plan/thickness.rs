@@ -1,5 +1,5 @@
-//! How thick a mesh is at each of its faces: what is narrower than two pixels may slip between samples,
-//! and a face of something thick never does, however small it is.
+//! The thickness of a mesh at each of its faces: what is narrower than two pixels may slip between samples, whereas
+//! a face of something thick never does, however small it is.
 
 use rayon::iter::{IntoParallelRefIterator as _, ParallelIterator as _};
 
@@ -11,21 +11,22 @@ use super::tips::tips;
 use crate::primitive::{PackedTriangle, Tip};
 use crate::simd::Vec3;
 
-/// Of the faces in a node, one of so many is measured for all of them, and those that look elsewhere.
+/// Of the faces in a node, one in this many is measured for all of them, and also each that faces in a new direction.
 const MEASURED: usize = 8;
-/// Cosine between the normals of faces above which they look the same way.
+/// Cosine between the normals of two faces above which they face the same way.
 const ALIKE: f64 = 0.7;
-/// Nodes that are looked into behind one of them, at most: where the boxes of long thin faces overlap, it would be all.
+/// Maximum number of nodes visited behind a face: where the boxes of long thin faces overlap, it would be all of
+/// them.
 const MOST_NODES: usize = 256;
-/// Where faces are measured, as shares of their corners: not in the middle, which lies before an edge of the other side
-/// where that is its mirror image.
+/// Barycentric coordinates of the point where a face is measured: off the centroid, which lies in front of an edge
+/// of the opposite side if that is its mirror image.
 const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
 
-/// For each triangle how thick the mesh is there, at least: through the inside to the other side of it
-/// (Shapira, Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape
-/// diameter function", The Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along
-/// the surface from border to border. Infinity where there is neither. `points` numbers the corners of each triangle,
-/// and `borders` are those of the triangles.
+/// Measures the least thickness of the mesh at each triangle: through the inside to the opposite side (Shapira,
+/// Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape diameter function", The
+/// Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along the surface from border to
+/// border. Infinity where there is neither. `points` numbers the corners of each triangle, and `borders` are those
+/// of the triangles.
 pub fn measures(
     triangles: &[PackedTriangle<f64>],
     points: &[[u32; 3]],
@@ -52,25 +53,25 @@ pub fn measures(
     }
 }
 
-/// Faces of a mesh in space.
+/// The faces of a mesh with their tree.
 struct Faces<'a> {
     triangles: &'a [PackedTriangle<f64>],
-    /// The way to the faces.
+    /// The tree over the faces.
     bvh: &'a Bvh<f64>,
-    /// Which of them look inwards.
+    /// Which of the faces have normals that point inwards.
     inside_out: Vec<bool>,
 }
 
-/// What is known of triangles.
+/// The measures of triangles.
 pub struct Measures {
-    /// For each triangle how thick the mesh is there, at least.
+    /// The least thickness of the mesh at each triangle.
     pub thicknesses: Vec<f64>,
-    /// For each triangle where it ends in something narrower, see [`tips`].
+    /// For each triangle, where it tapers, see [`tips`].
     pub tips: Vec<Tip>,
 }
 
 impl Faces<'_> {
-    /// Through the inside. Neighbours share the least of what some of them have.
+    /// The thickness through the inside. All faces of a node get the least value measured for some of them.
     fn depths(&self) -> Vec<f64> {
         let nodes = self.bvh.nodes.par_iter();
         let found: Vec<f64> = nodes.map(|node| self.least_depth(node)).collect();
@@ -83,8 +84,8 @@ impl Faces<'_> {
         depths
     }
 
-    /// The least of what some of the faces in a node have: one of each way that they look at least, since the ends of a
-    /// rod are as far apart as it is long.
+    /// The least depth of the measured faces in a node: at least one for each direction in which they face, since
+    /// the ends of a rod are as far apart as it is long.
     fn least_depth(&self, node: &Node) -> f64 {
         let (mut least, mut measured) = (f64::INFINITY, Vec::new());
         for (index, face) in node.members().enumerate() {
@@ -98,7 +99,7 @@ impl Faces<'_> {
         least
     }
 
-    /// How far the other side is from about the middle of a face, straight through the inside.
+    /// The distance from about the middle of a face straight through the inside to the opposite side.
     fn depth(&self, face: usize) -> f64 {
         let [a, b, c] = self.triangles[face].corners;
         let [of_a, of_b, of_c] = NEARLY_MIDDLE;
@@ -121,7 +122,7 @@ impl Faces<'_> {
         if is_sure {
             nearest
         } else {
-            // Thin by itself, as far as is known: it is looked for.
+            // As far as is known, thin by itself, so thin things are looked for there.
             nearest.min(self.triangles[face].thickness)
         }
     }
@@ -152,12 +153,12 @@ mod tests {
         Vec3::new(x, y, z)
     }
 
-    /// Two triangles, clockwise seen from where their four corners are.
+    /// Two triangles that make a square, clockwise seen from the side from which its corners are.
     fn square(a: Vec3<f64>, b: Vec3<f64>, c: Vec3<f64>, d: Vec3<f64>) -> [[Vec3<f64>; 3]; 2] {
         [[a, b, c], [a, c, d]]
     }
 
-    /// A rod along x of this width, in `steps` pieces, without ends.
+    /// A rod of this width along x, in `steps` pieces, without ends.
     fn rod(width: f64, steps: usize) -> Vec<[Vec3<f64>; 3]> {
         let ring = [(0.0, 0.0), (0.0, width), (width, width), (width, 0.0)];
         let mut faces = Vec::new();
@@ -180,7 +181,7 @@ mod tests {
     fn a_rod_is_as_thick_as_it_is_wide_however_long_its_faces_are() {
         for width in [0.1, 3.0] {
             let found = found(&rod(width, 20));
-            // Without ends, those at the ends have a border.
+            // The rod has no ends, so its first and last faces have a border.
             for thickness in &found[8..found.len() - 8] {
                 assert!((thickness - width).abs() < 1e-9, "{thickness} for {width}");
             }
@@ -213,7 +214,7 @@ mod tests {
                 faces.push([corner(1, 0), corner(1, side + 1), corner(1, side)]);
             }
             let other_way: Vec<_> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
-            // Parts of a mesh need not be wound alike.
+            // Components of a mesh may be wound differently.
             let beside =
                 |[a, b, c]: [Vec3<f64>; 3]| [a, b, c].map(|corner| corner + at(0.0, 0.0, 90.0));
             let both: Vec<_> = faces
@@ -236,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_ribbon_is_as_thick_as_it_is_wide_and_its_inside_is_no_edge() {
-        // Along x, wavy, each step six triangles wide.
+        // Along x, wavy, with six squares across at each step.
         let (mut faces, rows) = (Vec::new(), 6);
         for step in 0..12 {
             for row in 0..rows {
@@ -266,7 +267,7 @@ mod tests {
             }
         }
         let thin = found(&faces).iter().filter(|t| **t < 20.0).count();
-        // At its corners the way across is short.
+        // At its corners, the distance across is short.
         assert!(thin < 80, "{thin} of 3200");
     }
 }

@@ -1,4 +1,4 @@
-//! Objects that fill the same surface, as the tracer counts them: the earlier one of the list is seen.
+//! Objects that fill the same surface, by primitive number: the earlier object of the list is seen.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -13,12 +13,13 @@ use crate::primitive::BoundingBox;
 use crate::scene::{Coincidence, Overlap, Projection, Scene};
 use crate::simd::Real;
 
-/// How far apart surfaces may be that count as one, twice: their own numbers are rounded too. What counts as that is
-/// the same in any precision.
+/// Twice the distance up to which surfaces count as one, as a share of the coordinates: their own numbers are
+/// rounded too. The same in every precision.
 const CLEARANCE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 
 impl<R: Real> Plan<R> {
-    /// Finds the ties of a scene, given the numbers of what stands in no tree by their places in its list.
+    /// Finds the ties of a scene; `listed` gives the primitive numbers of objects outside of the tree by their
+    /// indices.
     pub fn tie(
         &mut self,
         scene: &Scene,
@@ -28,7 +29,7 @@ impl<R: Real> Plan<R> {
         let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
         let is_met = |found: &&Coincidence| !(is_perspective && self.hides(scene, found));
         let met: Vec<&Coincidence> = contacts.shared.iter().filter(is_met).collect();
-        // Where all that is in one place looks alike, nobody sees which of it is in front.
+        // If all objects in one surface look alike, it does not matter which of them is in front.
         let look_alike = |found: &Coincidence| scene.look_alike(found.later, found.earlier);
         let unlike = met.iter().filter(|found| !look_alike(found));
         let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
@@ -59,7 +60,7 @@ impl<R: Real> Plan<R> {
         self.ties = ties;
     }
 
-    /// The numbers of the object at a place in the scene's list.
+    /// The primitive numbers of the object with this index in the scene's list.
     fn numbers_at(&self, index: usize, listed: &HashMap<usize, usize>) -> Option<Range<usize>> {
         if let Some(&number) = listed.get(&index) {
             return Some(number..number + 1);
@@ -71,8 +72,9 @@ impl<R: Real> Plan<R> {
         Some(first + inner.start..first + inner.end)
     }
 
-    /// Whether a solid stands between the eye, which is not near it, and the faces on which it stands: no ray that
-    /// comes from the eye reaches the other side of an endless plane. One that starts inside of it, or on it, may.
+    /// Returns whether a solid that stands on an endless plane hides its faces there from the eye, which is on the
+    /// same side and outside of the solid's box: no ray from the eye gets to the other side of the plane. A ray
+    /// that starts in the solid, or on it, may see those faces.
     fn hides(&self, scene: &Scene, found: &Coincidence) -> bool {
         let places = [found.later, found.earlier];
         let mesh = places.into_iter().find_map(|index| self.mesh_at(index));
@@ -93,14 +95,14 @@ impl<R: Real> Plan<R> {
         found.extent == Overlap::Standing && mesh.is_solid() && is_between && is_beside
     }
 
-    /// The mesh that is at this place in the scene's list.
+    /// The mesh with this index in the scene's list.
     fn mesh_at(&self, place: usize) -> Option<&MeshInstance<R>> {
         let meshes = &self.geometry.as_ref()?.meshes;
         let found = meshes.binary_search_by_key(&place, |mesh| mesh.place);
         found.ok().map(|index| &meshes[index])
     }
 
-    /// The tie of what has this number.
+    /// The tie of the primitive with this number.
     #[inline(always)]
     pub fn tie_of(&self, number: usize) -> Option<&Tie> {
         let after = self.ties.partition_point(|tie| tie.numbers.start <= number);

@@ -1,30 +1,31 @@
-//! Where meshes end in something narrower than they are: their borders, and sharp points.
+//! Where meshes taper to less than their thickness: at their borders and sharp points.
 
 use crate::primitive::{PackedTriangle, Tip, Vertex};
 use crate::simd::Vec3;
 
-/// Cosine of the angle that all edges of a sharp point make with their middle, at least.
+/// Least cosine between the edges of a sharp point and their mean direction.
 const SHARP: f64 = 0.75;
-/// Most faces around a sharp point that are looked at one by one, wherever they are narrow: those of a round cone are
-/// everywhere, and only where they meet is it narrow itself.
+/// Number of faces at a sharp point up to which thin things are looked for wherever a face is narrow. With more, as
+/// in a round cone, faces are narrow everywhere, but the cone itself only near its point.
 const FEW: u32 = 8;
-/// Around more faces nothing is looked for: each of them would be, by every ray near their point.
+/// Number of faces at a point above which nothing is looked for, since every ray near the point would look for each
+/// of them.
 const MOST: u32 = 128;
 
-/// The edges of a point.
+/// The edges that meet at a point.
 #[derive(Clone, Copy)]
 struct PointEdges {
     faces: u32,
-    /// The sum of their unit directions.
+    /// The sum of the edges' unit directions.
     axis: Vec3<f64>,
-    /// The least cosine of one of them with the axis.
+    /// The least cosine between an edge and the axis.
     least: f64,
-    /// The greatest one.
+    /// The greatest such cosine.
     greatest: f64,
 }
 
 impl PointEdges {
-    /// What the faces around it have there, as far as they have it as their corner `which`.
+    /// The tip of the faces around the point, seen as their corner `which`.
     fn tip(&self, which: Vertex) -> Tip {
         if self.least <= SHARP || MOST < self.faces {
             return Tip::Nowhere;
@@ -32,13 +33,13 @@ impl PointEdges {
         if self.faces <= FEW {
             return Tip::Narrow;
         }
-        // From one side to the other, seen from where that is least.
+        // The width across the point per distance from it, seen from where that is smallest.
         let tangent = (1.0 - self.greatest.powi(2)).max(0.0).sqrt() / self.greatest;
         Tip::round(which, 2.0 * tangent)
     }
 }
 
-/// For each triangle where it has an edge that no other has, or a corner that sticks out: seen from the side it is
+/// Returns for each triangle where it tapers, at a border edge or at a sharp corner: seen from the side, it is
 /// narrower there than the mesh is thick. `points` numbers the corners, `borders` are the triangles on borders.
 pub fn tips(
     triangles: &[PackedTriangle<f64>],
@@ -61,7 +62,7 @@ pub fn tips(
     tips
 }
 
-/// The edges of each point.
+/// Collects the edges at each point.
 fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<PointEdges> {
     let count = points.iter().flatten().max().map_or(0, |last| last + 1);
     let empty = PointEdges {
@@ -95,7 +96,7 @@ fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<
     around
 }
 
-/// The unit directions from a corner of a triangle to the others.
+/// The unit directions from a corner of a triangle to the other corners.
 fn edges_from(triangle: &PackedTriangle<f64>, corner: usize) -> [Vec3<f64>; 2] {
     let at = |step: usize| triangle.corners[(corner + step) % 3];
     let towards = |step: usize| (at(step) - at(0)).try_normalize();
@@ -108,7 +109,7 @@ mod tests {
 
     use super::*;
 
-    /// A closed pyramid of so many sides, this high, its top first; with its base, or open.
+    /// A pyramid with this number of sides and this height, its apex first; closed by a base, or open.
     fn pyramid(sides: u32, height: f64, has_base: bool) -> Vec<Tip> {
         let place = |number: u32| match number {
             0 => DVec3::Y * height,
@@ -143,7 +144,7 @@ mod tests {
         assert!(are_all(&flat, Tip::Nowhere), "{flat:?}");
         let open = pyramid(4, 0.5, false);
         assert!(are_all(&open, Tip::Narrow), "{open:?}");
-        // Two fifths as wide as it is far from its top, which each face has as its first corner.
+        // Two fifths as wide as the distance from the apex, which is the first corner of each face.
         let cone = pyramid(40, 5.0, true);
         assert!(are_all(&cone[..40], Tip::round(Vertex::A, 0.4)), "{cone:?}");
         assert!(are_all(&cone[40..], Tip::Nowhere), "{cone:?}");

@@ -1,4 +1,4 @@
-//! Primary rays: from a pixel to a ray.
+//! Primary rays, one for each sample position.
 
 use glam::{DMat3, DVec3};
 
@@ -6,25 +6,26 @@ use super::RenderRequest;
 use crate::scene::{Camera, Projection, Sampling};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// So many pixels aside are the places between which clean edges are looked for. Plans, whose walls run along the sides of
-/// pixels, would have all of them on an edge, where rounding decides what they see; and a picture is off by an eighth of a
-/// level at most for it. Not along any slope that people draw, and with few bits: sums with places are exact.
+/// Shift of the sample positions of adaptive sampling, right and down, in pixels. Without it, in a floor plan whose
+/// walls run along pixel sides, every sample would lie on an edge, where rounding decides what it sees. The shift
+/// changes a picture by an eighth of a level at most. It runs along no slope that people draw, and it has few bits,
+/// so that adding it to a position is exact.
 const ASIDE: (f64, f64) = (4.0 / 8192.0, 3.0 / 8192.0);
 
-/// The camera made ready: turns pixels into rays with unit directions.
+/// The camera prepared for tracing: turns pixel positions into rays with unit directions.
 #[derive(Clone, Copy, Debug)]
 pub struct View<R> {
     /// The eye, or the centre of the view window.
     origin: Vec3<R>,
-    /// Right, one image height (perspective) or view height (orthographic) long.
+    /// The right vector, one image height (perspective) or view height (orthographic) long.
     u: Vec3<R>,
-    /// Up, of the same length.
+    /// The up vector, of the same length.
     v: Vec3<R>,
-    /// From the eye to the middle of the image plane, in image heights (perspective); the common
-    /// unit direction (orthographic).
+    /// From the eye to the middle of the image plane, in image heights (perspective); the common unit direction
+    /// (orthographic).
     forward: Vec3<R>,
     projection: Projection,
-    /// Half the width and height in pixels, but for [`ASIDE`].
+    /// Half the width and height in pixels, less [`ASIDE`].
     half: (R, R),
     /// Image heights per pixel.
     pixel: R,
@@ -33,7 +34,7 @@ pub struct View<R> {
 }
 
 impl<R: Real> View<R> {
-    /// Makes `camera` ready, with everything moved by `-centre`.
+    /// Prepares `camera`, with coordinates relative to `centre`.
     pub fn new(camera: &Camera, request: &RenderRequest, centre: DVec3) -> Self {
         let basis = camera.basis().unwrap_or(DMat3::IDENTITY);
         let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
@@ -65,19 +66,19 @@ impl<R: Real> View<R> {
         }
     }
 
-    /// The largest coordinate, at most, of where rays start.
+    /// An upper bound of the coordinates of ray origins.
     pub fn farthest_start(&self) -> R {
         let (half_width, half_height) = self.half;
         self.origin.max_abs() + self.footprint.0 * (half_width + half_height)
     }
 
-    /// How wide a pixel is at the eye, and how much wider at distance 1, at most.
+    /// Upper bounds of the width of a pixel at the eye, and of its increase per unit of distance.
     pub fn footprint(&self) -> (R, R) {
         self.footprint
     }
 
-    /// How much wider a pixel becomes at distance 1; where the camera's rays are parallel, as much as in a
-    /// perspective picture that is as high as its distance.
+    /// The increase of a pixel's width per unit of distance; for parallel rays, that of a perspective picture as
+    /// high as its distance.
     pub fn spread(&self) -> R {
         match self.projection {
             Projection::Orthographic => self.pixel,
@@ -85,14 +86,14 @@ impl<R: Real> View<R> {
         }
     }
 
-    /// How wide a pixel is within this distance of a point, at most.
+    /// An upper bound of a pixel's width within `reach` of a point.
     pub fn width_at(&self, point: Vec3<R>, reach: R) -> R {
         let (width, spread) = self.footprint;
         width + spread * ((point - self.origin).length() + reach)
     }
 
-    /// Origin and unit direction of the rays through the places (x, y) of the picture, in pixels
-    /// from its left and upper edge. The centre of the first pixel is (½, ½).
+    /// Origins and unit directions of the rays through the positions (x, y) in the picture, in pixels from its left
+    /// and upper edge. The centre of the first pixel is (½, ½).
     #[inline(always)]
     pub fn rays<L: SimdFloat<Real = R>>(&self, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
         let (half_width, half_height) = self.half;

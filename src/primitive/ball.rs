@@ -1,18 +1,18 @@
-//! Balls around things, in double precision.
+//! Bounding balls in double precision.
 
 use glam::DVec3;
 
 use crate::simd::Real;
 
-/// Share by which balls and angles are taken larger than computed, for the rounding of the kernel.
+/// Relative enlargement of balls and angles, to cover the kernel's rounding.
 pub const CAUTION: f64 = 1e-3;
-/// Share of a distance, for the same reason.
+/// The same for distances, as a share of the distance.
 pub const FAR_CAUTION: f64 = 1e-5;
 
-/// Roundings that the test of a primitive may add up to.
+/// Upper bound of the accumulated roundings in a primitive's test.
 const ROUNDINGS: f64 = 16.0;
 
-/// What the test of a primitive may be off by, as a share of the largest coordinate.
+/// Upper bound of the error of a primitive's test, as a share of the largest coordinate.
 pub fn roundings<R: Real>() -> R {
     R::UNIT_ROUNDOFF * R::from_f64(ROUNDINGS)
 }
@@ -20,14 +20,14 @@ pub fn roundings<R: Real>() -> R {
 /// A ball in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its middle.
+    /// The centre.
     pub center: DVec3,
     /// ≥ 0.
     pub radius: f64,
 }
 
 impl Ball {
-    /// The smallest ball around a triangle.
+    /// Returns the smallest ball around a triangle.
     pub fn around_triangle([a, b, c]: [DVec3; 3]) -> Self {
         let squares =
             [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| ((q - p).dot(q - p), p, q, r));
@@ -54,11 +54,12 @@ impl Ball {
         }
     }
 
-    /// Whether another ball lies wholly behind this one, seen from a light: nothing in it is lit.
+    /// Returns whether another ball is completely behind this one as seen from a light, so that nothing in it is
+    /// lit.
     pub fn hides(&self, light: DVec3, ball: &Self) -> bool {
         let towards = self.center - light;
         let length = towards.length();
-        // A light on it shines into it: what is in there is not behind it.
+        // A light on the surface shines into the ball, so that nothing inside is behind it.
         if length <= self.radius * (1.0 + CAUTION) {
             return false;
         }
@@ -82,7 +83,7 @@ mod tests {
         prop::array::uniform3(-scale..scale).prop_map(DVec3::from)
     }
 
-    /// A point of the ball: `inside` is drawn into it.
+    /// A point of the ball: `inside` is moved into it.
     fn within(ball: &Ball, inside: DVec3) -> DVec3 {
         ball.center + inside * (ball.radius / inside.length().max(1.0))
     }

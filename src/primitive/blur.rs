@@ -1,34 +1,35 @@
-//! How far rays may be beside their place, since numbers are rounded.
+//! How far rays may be off because numbers are rounded.
 
 use crate::simd::{Real, SimdFloat};
 
-/// Roundings of a ray's coordinates that its place may be off by, at its start and along it; all of them in the same
-/// direction would add up to 8. With these, no pixel of 1,000 random scenes is wrong.
+/// Roundings of a ray's coordinates by which it may be off, at its start and along it; if all of them went in the
+/// same direction, they would add up to 8. With this bound, no pixel of 1,000 random scenes is wrong.
 const ROUNDINGS: f64 = 4.0;
 
-/// How far rays may be beside where they would be in exact arithmetic: at their start, and how much farther at
-/// distance 1. A running error analysis, as Wilkinson, "Rounding errors in algebraic processes" (1963), ch. 1; what
-/// it leaves undecided is computed again, as Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
-/// geometric predicates", Discrete & Computational Geometry 18 (1997).
+/// How far rays may be from their position in exact arithmetic: at their start, and the increase per unit of
+/// distance. A running error analysis, as in Wilkinson, "Rounding errors in algebraic processes" (1963), ch. 1;
+/// results that it leaves undecided are computed again, as in Shewchuk, "Adaptive precision floating-point
+/// arithmetic and fast robust geometric predicates", Discrete & Computational Geometry 18 (1997).
 #[derive(Clone, Copy, Debug)]
 pub struct Blur<L> {
-    /// Scene units.
+    /// In scene units.
     pub start: L,
-    /// Scene units per scene unit; below 0 for rays to a place that is known better than their start.
+    /// In scene units per scene unit; negative for rays to a point that is known more precisely than their start.
     pub spread: L,
-    /// What it is at least along them, scene units.
+    /// Lower bound along the rays, in scene units.
     least: L,
 }
 
 impl<R: Real> Blur<R> {
-    /// Of rays that start where no coordinate is larger than this, and are known as well as such numbers can be. What
-    /// they meet has coordinates no larger than that and its distance: it is off by no more.
+    /// The blur of rays whose start has no coordinate larger than `size` and is as precise as such numbers can be.
+    /// Whatever they hit has no coordinate larger than `size` plus its distance, so its rounding error is no larger
+    /// either.
     pub fn of_size(size: R) -> Self {
         let spread = R::UNIT_ROUNDOFF * R::from_f64(ROUNDINGS);
         Self::spreading(size * spread, spread)
     }
 
-    /// Of rays that are so far off at their start, and so much more at distance 1.
+    /// The blur of rays that are off by `start` at their start, and by `spread` more per unit of distance.
     pub fn spreading(start: R, spread: R) -> Self {
         Self {
             start,
@@ -37,7 +38,7 @@ impl<R: Real> Blur<R> {
         }
     }
 
-    /// Where nobody asks what is undecided.
+    /// For pictures in which undecided results are not looked for.
     pub const NONE: Self = Self {
         start: R::ZERO,
         spread: R::ZERO,
@@ -56,7 +57,7 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// The same for all rays.
+    /// The same blur for all rays.
     #[inline(always)]
     pub fn splat(token: L::Token, blur: Blur<L::Real>) -> Self {
         Self {
@@ -66,8 +67,8 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// Of rays that go on from where others may be so far beside their place: `off` more at their start, and as much as
-    /// that is turned in a new direction.
+    /// The blur of secondary rays from hits that may be off by `off`, in addition to `self`; `turn` is the change
+    /// of their direction that results from it.
     #[inline(always)]
     #[must_use]
     pub fn onwards(&self, off: L, turn: L) -> Self {
@@ -78,8 +79,8 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// Of rays that go on from there, so far, to a point that is known: they come together there. Given with the distance
-    /// is one over that of the point, which may be a little farther away.
+    /// The same for rays of a given length to a known point, at which they converge. Takes the length and one over
+    /// the distance of the point, which may be slightly larger than the length.
     #[inline(always)]
     #[must_use]
     pub fn towards(&self, off: L, (distance, per_length): (L, L)) -> Self {
@@ -89,25 +90,25 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// How far they may be beside their place at a distance.
+    /// How far rays may be off at a distance.
     #[inline(always)]
     pub fn at(&self, t: L) -> L {
         (self.start + self.spread * t).max(self.least)
     }
 
-    /// How far at most from a distance on up to a greater one.
+    /// How far rays may be off between two distances.
     #[inline(always)]
     pub fn between(&self, from: L, to: L) -> L {
         self.at(from).max(self.at(to))
     }
 
-    /// How far at most within so much of a distance.
+    /// How far rays may be off at distances that differ from `t` by at most `reach`.
     #[inline(always)]
     pub fn around(&self, t: L, reach: L) -> L {
         self.between((t - reach).max(t.like(L::Real::ZERO)), t + reach)
     }
 
-    /// So many times as much.
+    /// The blur multiplied by a factor.
     #[inline(always)]
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
@@ -119,7 +120,7 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// This where the mask is set, `other` elsewhere.
+    /// This blur where the mask is set, `other` elsewhere.
     #[inline(always)]
     #[must_use]
     pub fn over(&self, mask: L::Mask, other: &Self) -> Self {
@@ -146,7 +147,7 @@ mod tests {
             assert!(blur.at(t) >= known * 0.999, "{part}");
             assert!(blur.at(t) <= known * 1.001 + own.at(distance), "{part}");
         }
-        // Also behind it.
+        // Also behind the light.
         assert!(blur.at(2.0 * distance) >= own.at(distance));
         let onwards = own.onwards(off, 1e-4);
         assert_eq!(onwards.at(0.0), off + own.start);
@@ -154,7 +155,7 @@ mod tests {
         assert_eq!(blur.around(2.0 * off, off), blur.at(off));
         assert_eq!(blur.around(off, 2.0 * off), blur.at(0.0));
         assert_eq!(onwards.around(2.0 * off, off), onwards.at(3.0 * off));
-        // The widest of a way is at its start for the one, and at its end for the other.
+        // The first one is widest at the start of the rays, the other one at their end.
         assert_eq!(blur.between(0.0, distance), blur.at(0.0));
         assert_eq!(onwards.between(0.0, distance), onwards.at(distance));
     }

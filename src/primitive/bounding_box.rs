@@ -1,19 +1,19 @@
-//! Boxes around things, along the axes.
+//! Axis-aligned bounding boxes.
 
 use super::ray::{Ray, inverse};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// A box along the axes.
+/// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundingBox<R> {
     /// The smallest coordinates.
     pub low: Vec3<R>,
-    /// The largest.
+    /// The largest coordinates.
     pub high: Vec3<R>,
 }
 
 impl<R: Real> BoundingBox<R> {
-    /// The box around nothing.
+    /// The empty box.
     pub fn nothing() -> Self {
         Self {
             low: Vec3::splat(R::INFINITY),
@@ -29,7 +29,7 @@ impl<R: Real> BoundingBox<R> {
         })
     }
 
-    /// The box around a ball, and a few roundings more.
+    /// The box around a ball, enlarged by a few roundings.
     pub fn around_ball(center: Vec3<R>, radius: R) -> Self {
         let slack = (center.max_abs() + radius) * R::UNIT_ROUNDOFF * R::from_f64(4.0);
         let reach = Vec3::splat(radius + slack);
@@ -39,7 +39,7 @@ impl<R: Real> BoundingBox<R> {
         }
     }
 
-    /// The box around both.
+    /// The union of two boxes.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl<R: Real> BoundingBox<R> {
         }
     }
 
-    /// The box with so much more on every side.
+    /// The box enlarged by `by` on every side.
     #[must_use]
     pub fn widened(&self, by: R) -> Self {
         let by = Vec3::splat(by);
@@ -58,15 +58,15 @@ impl<R: Real> BoundingBox<R> {
         }
     }
 
-    /// Its middle, and how far from there it reaches.
+    /// The box's bounding ball: its middle and radius.
     pub fn ball(&self) -> (Vec3<R>, R) {
         let half = R::from_f64(0.5);
         let middle = self.low * half + self.high * half;
         (middle, (self.high - self.low).length() * half)
     }
 
-    /// How far along rays it begins, or where they pass within so much of it; infinity where they do not. A function of
-    /// its own: it is long, and few rays need it.
+    /// Returns the distance at which rays enter the box enlarged by `beside` on every side; infinity where they
+    /// miss it. Not inlined, since it is long and few rays need it.
     #[inline(never)]
     pub fn entry<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, beside: L) -> L {
         L::vectorize(
@@ -94,7 +94,7 @@ impl<R: Real> BoundingBox<R> {
         )
     }
 
-    /// The largest coordinate, of either sign.
+    /// The largest absolute coordinate.
     pub fn max_abs(&self) -> R {
         self.low.max_abs().max(self.high.max_abs())
     }

@@ -12,7 +12,7 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 /// A flat disc: the points p with normal · (p - center) = 0 and |p - center| ≤ radius.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedDisc<R> {
-    /// Its middle.
+    /// The centre.
     pub center: Vec3<R>,
     /// Unit normal.
     pub normal: Vec3<R>,
@@ -59,7 +59,7 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         self.material
     }
 
-    /// Edge-on, nothing is seen of it.
+    /// Seen edge-on, it has no width.
     fn thickness(&self) -> R {
         R::ZERO
     }
@@ -71,9 +71,9 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
     #[inline(always)]
     fn prepare<L: SimdFloat<Real = R>>(_directions: Vec3<L>) {}
 
-    /// t = n·(c - o) / n·d as for a plane, where |o + t·d - c|² ≤ r². The sum is taken from the middle,
-    /// so that it is as exact for a disc far away as for one nearby. A ray along the disc divides by zero,
-    /// and the comparison fails.
+    /// t = n·(c - o) / n·d as for a plane, where |o + t·d - c|² ≤ r². Computed relative to the centre, so that it
+    /// is as exact for a distant disc as for a nearby one. A ray parallel to the disc divides by zero, and the
+    /// comparison fails.
     #[inline(always)]
     fn intersect<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &(), _methods: &Methods) -> L {
         let normal = rays.origin.like(self.normal);
@@ -85,8 +85,8 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         L::select(is_inside & is_ahead, t, t.like(R::INFINITY))
     }
 
-    /// Undecided where they pass its rim, which they meet farther off the more they slant, where they go along it, and
-    /// where they start on it.
+    /// Undecided for rays that pass near the rim (the more oblique they are, the farther off their hits may be),
+    /// that run along the disc, or that start on it.
     #[inline(always)]
     fn intersect_in_doubt<L: SimdFloat<Real = R>>(
         &self,
@@ -137,11 +137,11 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         }
     }
 
-    /// Seen along the ray, the disc is an ellipse of half-axes r and r·|n·d|. With f = √((a/B)² + (b/A)²),
-    /// which is 1 on an ellipse and changes by at most 1/B per length, (f - 1)·B is no more than the
-    /// distance from it, and neither is the distance from the circle of radius r. It reaches from end to end of the
-    /// chord over which the ray passes, and not of the whole disc: where rays end before that, it is not there, and the
-    /// box around it need not be met.
+    /// Seen along the ray, the disc is an ellipse with half-axes r and r·|n·d|. With f = √((a/B)² + (b/A)²), which
+    /// is 1 on an ellipse and changes by at most 1/B per length, (f - 1)·B is at most the distance from it, and so
+    /// is the distance from the circle of radius r. `from` and `to` are the ends of the chord that the ray passes
+    /// over, not those of the whole disc: for rays that end before the chord, the disc is not there, and they need
+    /// not hit the box around it.
     #[inline(always)]
     fn approach<L: SimdFloat<Real = R>>(
         &self,
@@ -156,12 +156,12 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let aside = x + rays.direction * along;
         let cosine = normal.dot(rays.direction);
         let square = aside.dot(aside);
-        // The part along the short axis, which is the normal's own part across the ray.
+        // The component along the short axis, in the direction of the normal's component across the ray.
         let sine_square = (cosine.like(R::ONE) - cosine * cosine).max(cosine.like(R::ZERO));
         let lean = aside.dot(normal);
         let zero = along.like(R::ZERO);
         let is_leaning = zero.less(sine_square);
-        // Rounding makes much of a small lean: a part is no more than the whole.
+        // Rounding magnifies a small lean, but a component is at most the whole.
         let short = L::select(is_leaning, lean * lean / sine_square, zero).min(square);
         let long = square - short;
         let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
@@ -212,8 +212,8 @@ mod tests {
             }
         }
 
-        /// No point of the disc is closer to the ray than the approach says, and a ray that it calls
-        /// outside misses.
+        /// No point of the disc is closer to the ray than the approach says, and a ray that is outside according to
+        /// it misses.
         #[test]
         fn the_distance_is_never_overstated(normal in vector(), eye in vector(), direction in vector(), angle in 0.0..6.3_f64, share in 0.0..1.0_f64) {
             let (Some(normal), Some(direction)) = (normal.try_normalize(), direction.try_normalize()) else { return Ok(()) };
@@ -226,7 +226,8 @@ mod tests {
             let off = point - eye * 3.0;
             let beside = (off - direction * off.dot(direction)).length();
             prop_assert!(approach.distance <= beside + 1e-9, "{} {}", approach.distance, beside);
-            // It reaches from rim to rim where the ray passes over it: through all of its points along the ray, to two of them.
+            // `from` and `to` are on the rim: for a ray through a point of the disc, that point is between them,
+            // and they are no farther apart than its chord.
             let through = Ray::<f64> { origin: Vec3::from_dvec3(point - direction * 2.0), ..ray };
             let chord = target.approach(&through, &(), |_| true).expect("asked for");
             prop_assert!(chord.from - 1e-6 <= 2.0 && 2.0 <= chord.to + 1e-6, "{chord:?}");
@@ -238,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Nearly face-on and far away, single precision makes a large lean of a small one.
+    /// Nearly face-on and far away, single precision turns a small lean into a large one.
     #[test]
     fn rounding_pushes_no_hit_out_of_a_far_disc() {
         let eye = DVec3::new(0.0, 0.0, 1000.0);

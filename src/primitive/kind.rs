@@ -1,5 +1,5 @@
-//! What every kind of primitive can do. Kernels are generic over it, so that each scan is compiled for
-//! its kind.
+//! The interface of all kinds of primitives. Kernels are generic over it, so that each scan is compiled separately
+//! for each kind.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Debug;
@@ -17,120 +17,120 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// The bits of a corner's coordinates.
 pub type Corner = [u64; 3];
 
-/// What packing needs to know of the scene.
+/// What packing needs to know about the scene.
 pub struct Packing<'a> {
-    /// What coordinates are made relative to.
+    /// The origin of packed coordinates.
     pub centre: DVec3,
     /// How many visible triangles meet at each corner.
     pub corner_users: &'a HashMap<Corner, usize>,
     /// The corners of the visible triangles that are faces of closed convex solids.
     pub faces_of_solids: &'a HashSet<[Corner; 3]>,
-    /// Where things are in the picture; `None` if nothing may be left out.
+    /// Computes rectangles in the picture; `None` if nothing may be left out.
     pub projector: Option<&'a Projector>,
 }
 
 /// A refined hit.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint<L: SimdFloat> {
-    /// On the surface.
+    /// The point on the surface.
     pub point: Vec3<L>,
     /// Unit normal of the surface, on either side.
     pub normal: Vec3<L>,
     /// One over the radius of curvature of the surface; 0 if it is flat.
     pub curvature: L,
-    /// How far the point may be off along the normal: 0, or a few roundings where it matters. A
-    /// number even where there is none: the compiler multiplies with it in either case, and what it
-    /// would find in its place may be a number so small that the processor stumbles over it.
+    /// Upper bound of the point's error along the normal: 0, or a few roundings where it matters. A number even
+    /// where there is none, instead of an `Option`: the compiler multiplies by it in either case, and what it would
+    /// find there otherwise may be a subnormal number, which slows the processor down.
     pub slack: L,
-    /// The largest number, about, that the point was worked out from: a coordinate, or a measure of the primitive. It
-    /// is a few roundings of that off, however near it is.
+    /// Roughly the largest number in the computation of the point: a coordinate, or a dimension of the primitive.
+    /// The point is off by a few roundings of that, however near it is.
     pub size: L,
 }
 
 /// How close rays come to a primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach<L> {
-    /// From where along the rays on it is about so close. What is round or pointed may begin a little before that where
-    /// rays pass beside it.
+    /// Distance along the rays from which on the primitive is about this close. Something round or pointed may
+    /// begin slightly earlier where rays pass beside it.
     pub from: L,
-    /// Up to where.
+    /// Distance along the rays up to which it is.
     pub to: L,
-    /// How far from the rays it is, in scene units; not above 0 inside.
+    /// Distance of the primitive from the rays, in scene units; at most 0 for rays through it.
     pub distance: L,
-    /// Its smallest measure as the rays see it, in scene units.
+    /// Its smallest width as seen along the rays, in scene units.
     pub size: L,
 }
 
 /// A primitive, packed for the kernels.
 pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
-    /// What it is in the scene.
+    /// Its description in the scene.
     type Description: Describe;
-    /// What its test needs of the directions of rays, computed once for all primitives of the kind.
+    /// Data that its test derives from ray directions, computed once for all primitives of the kind.
     type Prepared<L: SimdFloat<Real = R>>: Copy;
 
-    /// Whether rays that start on it can meet it again elsewhere, see [`Self::exit`].
+    /// Whether rays that start on it can hit it again elsewhere, see [`Self::exit`].
     const IS_CURVED: bool = false;
 
-    /// Whether it never ends.
+    /// Whether it is unbounded.
     const IS_ENDLESS: bool = false;
 
-    /// The packed form; `None` for what no ray can meet.
+    /// Packs a description; `None` if no ray can hit it.
     fn pack(description: &Self::Description, material: u32, packing: &Packing) -> Option<Self>;
 
-    /// Where it is in the picture; `None` for what never ends.
+    /// Its rectangle in the picture; `None` if unbounded.
     fn rectangle(description: &Self::Description, projector: &Projector) -> Option<Rectangle>;
 
-    /// A ball around it; `None` for what never ends.
+    /// A ball around it; `None` if unbounded.
     fn ball(&self) -> Option<Ball>;
 
-    /// The box around it; `None` for what never ends.
+    /// The box around it; `None` if unbounded.
     fn bounds(&self) -> Option<BoundingBox<R>>;
 
     /// Index of its material.
     fn material(&self) -> u32;
 
-    /// The smallest measure that rays can see of it, in scene units; infinity for what is never narrower
-    /// than a pixel.
+    /// The smallest width that rays can see of it, in scene units; infinity for what is never narrower than a
+    /// pixel.
     fn thickness(&self) -> R;
 
-    /// Where it is the far side of a solid for who looks along these directions, and may have been left out; `None` if it
-    /// never is.
+    /// Returns where it is on the far side of a solid for an observer looking along `sight`, so that it may have
+    /// been left out; `None` if it never is.
     #[inline(always)]
     fn is_far<L: SimdFloat<Real = R>>(&self, _sight: Vec3<L>) -> Option<L::Mask> {
         None
     }
 
-    /// How thick it is as what light of these directions is blocked by: nothing where it may have been left out before the
-    /// light.
+    /// The width with which it blocks light from these directions: zero where it may have been left out as an
+    /// occluder.
     #[inline(always)]
     fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         directions.x.like(self.thickness())
     }
 
-    /// The unit normal of what is flat, and how far that goes at most; `None` for what is not. What is round is flat as
-    /// far as it hardly turns, and has no one normal there: it is 0.
+    /// The unit normal and the extent of a flat primitive; `None` for others. A curved one counts as flat as far as
+    /// it hardly turns; the normal is then 0, as there is no single one.
     fn flat(&self) -> Option<(Vec3<R>, R)> {
         None
     }
 
-    /// Whether it has an outline of its own, beside which nothing of the same thing goes on.
+    /// Returns whether its outline is its own: no other part of the same thing continues beyond it.
     #[inline(always)]
     fn has_outline(&self) -> bool {
         !Self::IS_ENDLESS
     }
 
-    /// A point of it, and how far from there it reaches.
+    /// A point of it, and the radius around that point within which all of it lies.
     fn reach(&self) -> (Vec3<R>, R);
 
-    /// Whether this primitive alone hides all of `ball` from `light`; `false` may be wrong.
+    /// Returns whether this primitive alone hides all of `ball` from `light`; may return `false` even if it does.
     fn hides(&self, _light: DVec3, _ball: &Ball) -> bool {
         false
     }
 
-    /// What the test needs of unit directions.
+    /// Derives the data of the test from unit directions.
     fn prepare<L: SimdFloat<Real = R>>(directions: Vec3<L>) -> Self::Prepared<L>;
 
-    /// The smallest t > 0 at which the rays meet it; infinity where they do not.
+    /// The smallest t > 0 at which the rays hit it; infinity for a miss.
     fn intersect<L: SimdFloat<Real = R>>(
         &self,
         rays: &Ray<L>,
@@ -138,8 +138,8 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         methods: &Methods,
     ) -> L;
 
-    /// The same, and from where along rays that are so blurred it is undecided whether they meet it: infinity where
-    /// that is decided. `None` if none does that is wanted; where one is not wanted, anything.
+    /// The same, with the distance from which on blurred rays may or may not hit it: infinity if the result is
+    /// certain. Returns `None` if no wanted ray hits it; the values of unwanted rays are arbitrary.
     fn intersect_in_doubt<L: SimdFloat<Real = R>>(
         &self,
         rays: &Ray<L>,
@@ -148,16 +148,16 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         blur_where_wanted: (&Blur<L>, L::Mask),
     ) -> Option<(L, L)>;
 
-    /// Where rays that start on it meet it again; infinity for what is flat.
+    /// The distance at which rays that start on it hit it again; infinity for flat primitives.
     #[inline(always)]
     fn exit<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>) -> L {
         rays.origin.x.like(R::INFINITY)
     }
 
-    /// The hits at `t`, drawn onto the surface.
+    /// Refines the hits at distance `t` onto the surface.
     fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L>;
 
-    /// How close rays come to it; `None` if `matters` says that this does not, of the same with a distance that may be
+    /// Returns how close rays come to it; `None` if `matters` rejects a preliminary result whose distance may be
     /// too short.
     fn approach<L: SimdFloat<Real = R>>(
         &self,
@@ -166,13 +166,13 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
         matters: impl FnOnce(&Approach<L>) -> bool,
     ) -> Option<Approach<L>>;
 
-    /// How far behind the end of rays it may begin and still be close to them, where a pixel is so wide.
+    /// How far behind the end of rays it may begin and still be close to them, for pixels of this width.
     #[inline(always)]
     fn margin<L: SimdFloat<Real = R>>(&self, width: L) -> L {
         width
     }
 
-    /// [`Self::intersect`] for a single test.
+    /// [`Self::intersect`] for a single test, including the preparation.
     #[inline(always)]
     fn meet<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, methods: &Methods) -> L {
         self.intersect(rays, &Self::prepare(rays.direction), methods)

@@ -1,4 +1,4 @@
-//! All primitives of a scene, in one list for each kind.
+//! All primitives of a scene, one list per kind.
 
 use super::disc::PackedDisc;
 use super::kind::{Packing, Primitive};
@@ -9,34 +9,34 @@ use super::triangle::PackedTriangle;
 use crate::scene::Shape;
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// Work on every list, compiled for each kind.
+/// Work on every list, compiled separately for each kind.
 pub trait Visit<R: Real> {
     /// Works on one list; `first` is the number of its first primitive.
     fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], first: usize);
 }
 
-/// Work on one primitive, compiled for each kind.
+/// Work on one primitive, compiled separately for each kind.
 pub trait WithPrimitive<R: Real> {
-    /// What it gives.
+    /// The result.
     type Output;
     /// Works on the primitive.
     fn run<P: Primitive<R>>(self, primitive: &P) -> Self::Output;
 }
 
-/// Work on one primitive with what its test needs of the directions of rays, compiled for each kind.
+/// Work on one primitive and the prepared data of its test, compiled separately for each kind.
 pub trait WithPrepared<L: SimdFloat> {
     /// Works on the primitive.
     fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>);
 }
 
-/// Where a shape went that was packed.
+/// Where a packed shape was stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Packed {
-    /// The list.
+    /// The kind, which determines the list.
     pub kind: Kind,
-    /// The place in it.
+    /// The index in the list.
     pub index: usize,
-    /// Where it is in the picture, if there is a projector and it is bounded.
+    /// Its rectangle in the picture, if there is a projector and the shape is bounded.
     pub rectangle: Option<Rectangle>,
 }
 
@@ -48,7 +48,7 @@ macro_rules! kinds {
             $(#[doc = concat!("See [`", stringify!($packed), "`].")] $kind),*
         }
 
-        /// How many kinds there are.
+        /// The number of kinds.
         pub const KINDS: usize = [$(Kind::$kind),*].len();
 
         /// All packed primitives, one list per kind. A primitive's number counts through the lists in
@@ -56,18 +56,19 @@ macro_rules! kinds {
         #[derive(Clone, Debug)]
         pub struct Primitives<R> {
             $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>,)*
-            /// For each triangle the first one that it is one thing with, if it is not one by itself; empty where all are.
+            /// For each triangle, the first triangle of the thing that it is part of, or `None` if it is one by
+            /// itself; empty if all are.
             pub things: Vec<Option<u32>>,
         }
 
-        /// What the test of each kind needs of the directions of rays.
+        /// Data derived from ray directions for the test of each kind.
         #[derive(Clone, Copy)]
         pub struct Prepared<L: SimdFloat> {
             $(#[doc = concat!("For [`", stringify!($packed), "`].")] pub $list: <$packed<L::Real> as Primitive<L::Real>>::Prepared<L>),*
         }
 
         impl<L: SimdFloat> Prepared<L> {
-            /// What the tests need of unit directions.
+            /// Derives the data from unit directions.
             #[inline(always)]
             pub fn new(directions: Vec3<L>) -> Self {
                 Self { $($list: $packed::<L::Real>::prepare(directions)),* }
@@ -81,7 +82,7 @@ macro_rules! kinds {
         }
 
         impl<R: Real> Primitives<R> {
-            /// Packs a shape, unless no ray can meet it. Tells where it went.
+            /// Packs a shape, unless no ray can hit it. Returns where it was stored.
             pub fn push(&mut self, shape: &Shape, material: u32, packing: &Packing) -> Option<Packed> {
                 match shape {
                     $(Shape::$kind(description) => {
@@ -94,12 +95,12 @@ macro_rules! kinds {
                             rectangle: packing.projector.and_then(place),
                         })
                     }),*
-                    // Many primitives, which are kept apart.
+                    // A mesh is many primitives, which are stored elsewhere.
                     Shape::Mesh(_) => None,
                 }
             }
 
-            /// How many there are of each kind.
+            /// The number of primitives of each kind.
             pub fn counts(&self) -> [usize; KINDS] {
                 [$(self.$list.len()),*]
             }
@@ -115,7 +116,7 @@ macro_rules! kinds {
                 let _ = first;
             }
 
-            /// Works on the primitive of a number that there is.
+            /// Runs `work` on the primitive with this number.
             ///
             /// # Panics
             /// If there is no primitive of this number.
@@ -131,7 +132,7 @@ macro_rules! kinds {
                 unreachable!("there is no primitive {index} behind the last")
             }
 
-            /// The same work with what has been prepared for rays.
+            /// Runs `work` on the primitive with this number and its prepared data.
             ///
             /// # Panics
             /// If there is no primitive of this number.
@@ -168,7 +169,7 @@ impl<R: Real> Primitives<R> {
         })
     }
 
-    /// What the primitive of a number is one thing with: the number of the first of them.
+    /// The number of the first primitive of the thing that a primitive is part of: its own, if it is one by itself.
     #[inline(always)]
     pub fn thing_of(&self, number: usize) -> usize {
         let first = self.firsts()[Kind::Triangle as usize];
@@ -177,17 +178,17 @@ impl<R: Real> Primitives<R> {
         thing.map_or(number, |thing| first + thing as usize)
     }
 
-    /// How many there are.
+    /// The number of primitives.
     pub fn len(&self) -> usize {
         self.counts().iter().sum()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no primitives.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many have an end.
+    /// The number of bounded primitives.
     pub fn bounded(&self) -> usize {
         self.len() - self.planes.len()
     }

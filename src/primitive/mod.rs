@@ -1,7 +1,7 @@
-//! The primitives as the kernels meet them: one file each, with its competing formulas side by side.
+//! Primitives in the form that the kernels use: one file each, with its alternative formulas side by side.
 //!
-//! A new one is a file here that implements [`Primitive`], and its line in `list.rs`; its description is
-//! in [`crate::scene`]. Each kernel is written once, for any real type and any number of lanes.
+//! A new primitive is a file here that implements [`Primitive`], and a line in `list.rs`; its description is in
+//! [`crate::scene`]. Each kernel is written once, for any real type and any number of lanes.
 
 mod ray;
 

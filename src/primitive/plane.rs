@@ -9,7 +9,7 @@ use super::ray::Ray;
 use crate::scene::{Methods, Plane, unit};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// An endless plane: the points p with normal · p = offset.
+/// An infinite plane: the points p with normal · p = offset.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedPlane<R> {
     /// Unit normal.
@@ -65,8 +65,8 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
     #[inline(always)]
     fn prepare<L: SimdFloat<Real = R>>(_directions: Vec3<L>) {}
 
-    /// t = (offset - n·o) / (n·d), or infinity if that is not in front. A ray along the plane divides
-    /// by zero; the comparison then fails and the plane is rightly not seen edge-on.
+    /// t = (offset - n·o) / (n·d), or infinity if that is not in front. A ray parallel to the plane divides by
+    /// zero; the comparison then fails, and the plane is correctly invisible edge-on.
     #[inline(always)]
     fn intersect<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &(), _methods: &Methods) -> L {
         let normal = rays.origin.like(self.normal);
@@ -75,7 +75,7 @@ impl<R: Real> Primitive<R> for PackedPlane<R> {
         L::select(t.like(R::ZERO).less(t), t, t.like(R::INFINITY))
     }
 
-    /// Undecided where they start on it, or go along it.
+    /// Undecided for rays that start on the plane or run along it.
     #[inline(always)]
     fn intersect_in_doubt<L: SimdFloat<Real = R>>(
         &self,

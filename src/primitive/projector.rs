@@ -1,10 +1,10 @@
-//! Where things are in the picture: rectangles of pixels, never too small.
+//! Positions in the picture, as pixel rectangles that are never too small.
 
 use glam::{DMat3, DVec3};
 
 use crate::scene::{Camera, Projection};
 
-/// A range of pixels in one direction, ends included; may lie outside the picture.
+/// A range of pixels in one direction, both ends included; may be outside of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// First pixel.
@@ -22,34 +22,34 @@ pub struct Rectangle {
     pub rows: Extent,
 }
 
-/// What may be anywhere.
+/// The range of anything that may be anywhere.
 const ANYWHERE: Extent = Extent {
     from: f32::NEG_INFINITY,
     to: f32::INFINITY,
 };
 
 impl Extent {
-    /// Whether the pixels `from..to` and this range have one in common.
+    /// Returns whether the range contains any of the pixels `from..to`.
     pub fn meets(self, from: usize, to: usize) -> bool {
         self.from < to as f32 && self.to >= from as f32
     }
 }
 
-/// A camera in double precision, and the size of its picture.
+/// A camera in double precision with the size of its picture.
 #[derive(Clone, Debug)]
 pub struct Projector {
     position: DVec3,
     basis: DMat3,
     projection: Projection,
-    /// Pixels per unit of (distance across / depth), or per world unit.
+    /// Pixels per unit of (lateral distance / depth), or per world unit.
     scale: f64,
     half: (f64, f64),
     margin: f64,
 }
 
 impl Projector {
-    /// The projector of a picture of `width × height` pixels, with `margin` pixels added to every
-    /// rectangle on every side; `None` if the camera has no basis.
+    /// Creates the projector of a picture of `width × height` pixels that adds `margin` pixels to every rectangle
+    /// on every side; `None` if the camera has no basis.
     pub fn new(camera: &Camera, (width, height): (u32, u32), margin: f64) -> Option<Self> {
         let height = f64::from(height);
         let scale = match camera.projection {
@@ -66,7 +66,7 @@ impl Projector {
         })
     }
 
-    /// Right, up and ahead of the camera.
+    /// The position of a point to the right of, above and ahead of the camera.
     fn seen(&self, point: DVec3) -> [f64; 3] {
         let seen = self.basis.transpose_mul_vec3(point - self.position);
         [seen.x, seen.y, -seen.z]
@@ -97,7 +97,8 @@ impl Projector {
         }
     }
 
-    /// The corners of a triangle on the image plane: right and up of its middle.
+    /// The corners of a triangle on the image plane, to the right of and above its middle; `None` if one is not
+    /// ahead.
     fn flat(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
         let seen = corners.map(|corner| self.seen(corner));
         let size = seen
@@ -144,8 +145,8 @@ fn bounds(values: [f64; 3]) -> (f64, f64) {
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// The slopes of the two lines from the eye that touch a circle at (`at`, `depth`); `None` where
-/// the circle reaches around the eye or behind it.
+/// The slopes of the two tangents from the eye to a circle around (`at`, `depth`); `None` if the circle extends
+/// around the eye or behind it.
 fn tangents(at: f64, depth: f64, radius: f64) -> Option<(f64, f64)> {
     let distance = at.hypot(depth);
     if distance <= radius * 1.000_001 {

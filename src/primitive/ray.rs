@@ -1,27 +1,27 @@
-//! Half-lines.
+//! Rays.
 
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// The smallest component of a direction; one over it is still a number in single precision.
+/// Least size of a direction's component when inverted; its reciprocal is still finite in single precision.
 const LEAST: f64 = 1e-30;
 
-/// Half-lines: origins and unit directions.
+/// Rays: origins and unit directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<L> {
-    /// Where they start.
+    /// The origins.
     pub origin: Vec3<L>,
-    /// Where they go; of length 1.
+    /// The directions, of length 1.
     pub direction: Vec3<L>,
 }
 
 impl<L: SimdFloat> Ray<L> {
-    /// The points `t` along.
+    /// The points at distance `t`.
     #[inline(always)]
     pub fn at(&self, t: L) -> Vec3<L> {
         self.origin + self.direction * t
     }
 
-    /// How far they pass a point, seen along them.
+    /// The perpendicular distance of a point from the rays' lines.
     #[inline(always)]
     pub fn beside(&self, point: Vec3<L::Real>) -> L {
         let to = self.origin.like(point) - self.origin;
@@ -29,7 +29,7 @@ impl<L: SimdFloat> Ray<L> {
     }
 }
 
-/// One over each component of directions; a large number where that is nothing.
+/// The reciprocal of each component; a large number for zero.
 #[inline(always)]
 pub fn inverse<L: SimdFloat>(direction: Vec3<L>) -> Vec3<L> {
     Vec3::new(

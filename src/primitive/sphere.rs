@@ -11,10 +11,10 @@ use super::ray::Ray;
 use crate::scene::{Methods, Sphere, SphereMethod};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// A ball.
+/// A sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedSphere<R> {
-    /// Its middle.
+    /// The centre.
     pub center: Vec3<R>,
     /// > 0.
     pub radius: R,
@@ -22,17 +22,17 @@ pub struct PackedSphere<R> {
     pub material: u32,
 }
 
-/// The part of its radius within which a ball is as flat as pixels see it: it turns by as many radians there. Where a ball
-/// of the size of the Earth is the ground, the shadows at its horizon are found then.
+/// Part of its radius within which a sphere counts as flat: it turns by as many radians there. With it, shadows at
+/// the horizon are found where a sphere of the size of the Earth is the ground.
 const FLAT_PART: f64 = 1.0 / 64.0;
 
-/// Distances along the ray to where its line enters and leaves a sphere; NaN if it passes by.
+/// Distances along the ray to where its line enters and leaves a sphere; NaN if it misses.
 type Roots<L> = (L, L);
 
-/// What is needed of a sphere where it is hit, for each ray of its own sphere.
+/// What is needed of a sphere where it is hit; each ray may have a different sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Round<L: SimdFloat> {
-    /// Its middle.
+    /// The centre.
     pub center: Vec3<L>,
     /// > 0.
     pub radius: L,
@@ -41,7 +41,7 @@ pub struct Round<L: SimdFloat> {
 }
 
 impl<L: SimdFloat> Round<L> {
-    /// The hits at `t`, drawn onto the surface.
+    /// Refines the hits at distance `t` onto the surface.
     #[inline(always)]
     pub fn refine(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
         let Self {
@@ -50,7 +50,7 @@ impl<L: SimdFloat> Round<L> {
             curvature,
         } = *self;
         let outwards = rays.at(t) - center;
-        // 1/|p - c| by one step of Newton's method from 1/R, which |p - c| all but is.
+        // 1/|p - c| by one step of Newton's method from 1/R, which is close to it.
         let near = outwards * curvature;
         let correction = t.like_f64(1.5) - near.dot(near) * t.like_f64(0.5);
         let normal = near * correction;
@@ -126,8 +126,8 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         first_ahead(near, far)
     }
 
-    /// Undecided where they graze it, R² - |x + b·d|² being off by no more than (2R + w)·w where they are off by w, and
-    /// where they start on it.
+    /// Undecided for rays that graze the sphere, where R² - |x + b·d|² is off by at most (2R + w)·w for rays that
+    /// are off by w, and for rays that start on it.
     #[inline(always)]
     fn intersect_in_doubt<L: SimdFloat<Real = R>>(
         &self,
@@ -144,7 +144,7 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         let radius = x.x.like(self.radius);
         let (b, inside) = perpendicular(x, rays.direction, radius);
         let square_of = |width: L| width * (radius + radius + width);
-        // Its middle is no farther from where rays start that come near it.
+        // Rays that come near the sphere can hit it only within a radius of the distance `b`.
         let width = blur.around(b.abs(), radius);
         let bound = square_of(width);
         let passes_by = inside.less(-bound);
@@ -174,8 +174,8 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         L::select(zero.less(half), half + half, half.like(R::INFINITY))
     }
 
-    /// p = c + (p - c)·R/|p - c|: the point is then off by a few roundings of R, however far the ray has
-    /// come. The normal points outwards.
+    /// p = c + (p - c)·R/|p - c|: the point is then off by a few roundings of R, whatever the length of the ray.
+    /// The normal points outwards.
     #[inline(always)]
     fn refine<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
         let round = Round {
@@ -204,7 +204,7 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         })
     }
 
-    /// A ball begins before its middle.
+    /// A sphere begins before its centre.
     #[inline(always)]
     fn margin<L: SimdFloat<Real = R>>(&self, width: L) -> L {
         width.like(self.thickness())
@@ -231,7 +231,7 @@ fn perpendicular<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> (L, L) {
     (b, radius * radius - perpendicular.dot(perpendicular))
 }
 
-/// The smaller of two roots that is above zero; infinity if there is none.
+/// The smaller positive root; infinity if there is none.
 #[inline(always)]
 fn first_ahead<L: SimdFloat>(near: L, far: L) -> L {
     let zero = near.like(L::Real::ZERO);
@@ -253,8 +253,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by
-    /// three angles so that no axis is special; the exact entry distance beside it.
+    /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by three angles so
+    /// that no axis is special; and the exact entry distance.
     fn aimed(ratio: f64, miss: f64, turn: [f64; 3]) -> (Ray<f32>, PackedSphere<f32>, f64) {
         let d = DVec3::new(
             turn[0].cos() * turn[1].cos(),
@@ -275,7 +275,7 @@ mod tests {
             origin: Vec3::splat(0.0_f32),
             direction: Vec3::from_dvec3(d),
         };
-        // The truth belongs to the rounded numbers that the kernel is given.
+        // The exact result for the rounded numbers that the kernel gets.
         let (c, d) = (
             sphere.center.to_dvec3(),
             ray.direction.to_dvec3().try_normalize().expect("unit"),

@@ -51,8 +51,8 @@ fn a_mesh_is_the_same_whichever_way_it_was_turned_before() {
             assert_eq!((turned.middle, turned.key), (fresh.middle, fresh.key));
         }
     }
-    // As if it had been made as it stands: the same faces in another order. Of those in a node some are measured for
-    // all, so that thicknesses are alike on the whole.
+    // The same as when packed with its rotation, but for the order of the faces. Of the faces in a node, only some
+    // are measured for all, so that thicknesses agree on the whole.
     let sorted = |mesh: &PackedMesh<f64>| {
         let faces = mesh.triangles.iter();
         let mut faces: Vec<_> = faces

@@ -1,20 +1,20 @@
-//! Flat faces that are shaded as if they were curved.
+//! Flat faces shaded as curved ones.
 
 use crate::primitive::kind::SurfacePoint;
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// Cosine to which a mirrored ray is lifted that would go into the face.
+/// Cosine between a face's normal and a mirrored ray to which a ray that would enter the face is raised.
 const LEAST_COSINE: f64 = 0.01;
 
-/// How far the ends of unit normals may be apart that are the same, in any precision.
+/// Distance between the ends of unit normals up to which they count as equal, in any precision.
 const ALIKE: f64 = 1e-5;
 
-/// The normals of a face that is shaded as if it were curved.
+/// The normals of a face that is shaded as curved.
 #[derive(Clone, Copy, Debug)]
 pub struct CornerNormals<R> {
-    /// Unit normals at its corners.
+    /// Unit normals at the corners.
     pub normals: [Vec3<R>; 3],
-    /// One over the smallest radius of curvature along its edges.
+    /// One over the smallest radius of curvature along the edges.
     pub curvature: R,
 }
 
@@ -27,14 +27,14 @@ impl<R: Real> CornerNormals<R> {
         }
     }
 
-    /// Whether they are the same but for rounding: the face looks as flat as it is.
+    /// Returns whether the normals are equal but for rounding, so that the face looks flat.
     pub fn are_alike(&self) -> bool {
         let [a, b, c] = self.normals;
         (a - b).length().max((a - c).length()) < R::from_f64(ALIKE)
     }
 }
 
-/// What is needed of such a face where it is hit, for each ray of its own face.
+/// What is needed of such a face where it is hit; each ray may have a different face.
 #[derive(Clone, Copy, Debug)]
 pub struct Curved<L> {
     /// The corners.
@@ -46,10 +46,9 @@ pub struct Curved<L> {
 }
 
 impl<L: SimdFloat> Curved<L> {
-    /// The hits on the flat faces, with the normals of a curved surface and lifted onto it: Phong,
-    /// "Illumination for computer generated pictures", CACM 18(6), 1975; Hanika, "Hacking the shadow
-    /// terminator", Ray Tracing Gems II (2021), ch. 4. All faces are turned to where rays in this direction
-    /// come from.
+    /// Lifts hits on the flat faces onto the curved surface and gives them its normals: Phong, "Illumination for
+    /// computer generated pictures", CACM 18(6), 1975; Hanika, "Hacking the shadow terminator", Ray Tracing Gems II
+    /// (2021), ch. 4. All faces are turned towards the origins of rays in this direction.
     #[inline(always)]
     pub fn bend(&self, flat: &SurfacePoint<L>, direction: Vec3<L>) -> SurfacePoint<L> {
         let zero = direction.x.like(L::Real::ZERO);
@@ -61,7 +60,7 @@ impl<L: SimdFloat> Curved<L> {
         for (index, weight) in weights.into_iter().enumerate() {
             let own = self.normals[index];
             let own = Vec3::select(is_away, -own, own);
-            // Onto the plane of the corner where that is above: a surface that is bent inwards stays flat.
+            // Onto the tangent plane of the corner if that is above; a concave surface stays flat.
             let below = (flat.point - self.corners[index]).dot(own).min(zero);
             normal = normal + own * weight;
             lift = lift - own * (below * weight);
@@ -77,7 +76,7 @@ impl<L: SimdFloat> Curved<L> {
     }
 }
 
-/// How much each corner has of a point of the triangle: the area on its other side.
+/// The barycentric coordinates of a point: for each corner, the share of the area opposite to it.
 #[inline(always)]
 fn weights<L: SimdFloat>([a, b, c]: [Vec3<L>; 3], normal: Vec3<L>, point: Vec3<L>) -> [L; 3] {
     let (a, b, c) = (a - point, b - point, c - point);
@@ -96,13 +95,13 @@ fn weights<L: SimdFloat>([a, b, c]: [Vec3<L>; 3], normal: Vec3<L>, point: Vec3<L
     [a * scale, b * scale, c * scale]
 }
 
-/// A normal like `normal` that mirrors rays to the side of the face where they come from.
+/// Returns `normal`, adjusted where needed so that it mirrors rays to the side of the face that they come from.
 #[inline(always)]
 fn kept_out<L: SimdFloat>(normal: Vec3<L>, face: Vec3<L>, direction: Vec3<L>) -> Vec3<L> {
     let along = direction.dot(normal);
     let mirrored = direction - normal * (along + along);
     let height = mirrored.dot(face);
-    // A ray that grazes the face leaves as flatly as it came.
+    // Rays that graze the face may leave it as flatly as they came.
     let come = -direction.dot(face);
     let least = (come * come.like_f64(0.9)).min(come.like_f64(LEAST_COSINE));
     let raised = mirrored + face * (least - height);
@@ -110,7 +109,7 @@ fn kept_out<L: SimdFloat>(normal: Vec3<L>, face: Vec3<L>, direction: Vec3<L>) ->
     let between = raised - direction;
     let length = between.length();
     let between = between * (come.like(L::Real::ONE) / length);
-    // A ray along the face is mirrored by nothing else.
+    // A ray along the face is mirrored only by the face's own normal.
     let between = Vec3::select(come.like(L::Real::ZERO).less(length), between, face);
     Vec3::select(height.less(least), between, normal)
 }

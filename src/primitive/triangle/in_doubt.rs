@@ -1,4 +1,4 @@
-//! Where rounding may decide whether a triangle is met.
+//! Where rounding may decide whether a triangle is hit.
 
 use super::packed::PackedTriangle;
 use super::watertight::{Shear, edges_of};
@@ -7,14 +7,15 @@ use crate::primitive::bounding_box::BoundingBox;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// How much an edge function changes at most where the ray is moved aside, as a multiple of how far, of the longest edge
-/// and of how much the shear stretches areas, which is one over the direction along its axis: once where its corners move
-/// as one, and half as much again since they are rounded one by one, by no more than half of that blur.
+/// Largest change of an edge function when the ray is displaced, as a multiple of the displacement, the longest
+/// edge and the factor by which the shear stretches areas (one over the direction's component along its axis): 1 if
+/// all corners move together, and half as much again because corners are rounded separately, by at most half of
+/// that blur.
 const STEEPNESS: f64 = 1.5;
 
-/// The watertight test, and from where on its answer is undecided: where some edge function may have either sign and
-/// the others do not say that the triangle is missed, and where it is met at the very start. `None` if no ray that is
-/// wanted meets it.
+/// The watertight test, with the distance from which on its result is undecided: where some edge function may have
+/// either sign and the others do not rule out a hit, and where the triangle is hit at the very start. Returns
+/// `None` if no wanted ray hits it.
 #[inline(always)]
 pub fn watertight_in_doubt<L: SimdFloat>(
     ray: &Ray<L>,
@@ -25,7 +26,7 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     let (corners, edges) = edges_of(ray, shear, triangle);
     let ([a, ..], [u, v, w]) = (corners, edges);
     let longest = u.like(triangle.longest);
-    // Rays to a light come together there: they are farther off where the triangle begins.
+    // Rays to a light converge there, so they are farther off where the triangle begins.
     let width = blur.around((a[2] * shear.z).abs(), longest);
     let bound = width * longest * shear.z.abs() * u.like_f64(STEEPNESS);
     let (low, high) = (u.min(v).min(w), u.max(v).max(w));
@@ -38,7 +39,7 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     let t = shear.distance(corners, edges);
     let inside = zero.at_most(low) | high.at_most(zero);
     let distance = L::select(inside & zero.less(t), t, infinity);
-    // Of rays that run along it, a little height decides over a long way.
+    // For rays that run along the triangle, a small height is decisive over a long distance.
     let normal = ray.origin.like(triangle.normal);
     let height = t * normal.dot(ray.direction);
     let starts_on_it = is_met & height.abs().at_most(blur.at(longest));
@@ -47,7 +48,8 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     if !passes_edge.any() {
         return Some((distance, from));
     }
-    // A narrow one's edges are uncertain far beyond its corners: only rays count that pass the box around it.
+    // The edges of a narrow triangle are uncertain far beyond its corners: only rays through the box around it
+    // count.
     let around = BoundingBox::around(&triangle.corners);
     let entry = around.entry(ray, width);
     Some((distance, L::select(passes_edge, entry.min(from), from)))

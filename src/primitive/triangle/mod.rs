@@ -29,35 +29,35 @@ use super::ray::Ray;
 use crate::scene::{Methods, Triangle, TriangleMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// How many times as wide a triangle counts at its tips as it is: what is narrow all along is looked for up to 2 pixels,
-/// of tips 1.1 are enough, with a third fewer rays for them.
+/// Factor by which a triangle counts as wider at its tips: things that are narrow all along are looked for up to a
+/// width of 2 pixels; for tips, 1.1 pixels are enough, with a third fewer rays for them.
 const WIDER_AT_TIPS: f64 = 2.0 / 1.1;
 
-/// What is needed of a triangle where it is hit, for each ray of its own triangle.
+/// What is needed of a triangle where it is hit; each ray may have a different triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat<L: SimdFloat> {
     /// A corner.
     pub corner: Vec3<L>,
     /// Unit normal.
     pub normal: Vec3<L>,
-    /// 1 where it shares a corner with another triangle, else 0.
+    /// 1 if it shares a corner with another triangle, otherwise 0.
     pub in_mesh: L,
     /// The length of its longest edge.
     pub longest: L,
 }
 
 impl<L: SimdFloat> Flat<L> {
-    /// The hits at `t`, drawn onto the surface.
+    /// Refines the hits at distance `t` onto the surface.
     #[inline(always)]
     pub fn refine(&self, rays: &Ray<L>, t: L) -> SurfacePoint<L> {
         let normal = self.normal;
         let point = rays.at(t);
         let point = point - normal * normal.dot(point - self.corner);
-        // The neighbours in a mesh meet the triangle at its edges: 4u·(|p| + |o| + t) is what the
-        // computation of the point can be off by.
+        // Neighbours in a mesh meet the triangle at its edges, so the slack covers the error of the computed point:
+        // up to 4u·(|p| + |o| + t).
         let reach = point.max_abs() + rays.origin.max_abs() + t;
         let roundings = t.like(L::Real::UNIT_ROUNDOFF * L::Real::from_f64(4.0));
-        // Where the ray meets nothing, infinity times 0 is no number.
+        // For rays that hit nothing, infinity times 0 is NaN.
         let slack = L::select(
             t.like(L::Real::ZERO).less(self.in_mesh),
             reach * roundings,
@@ -236,7 +236,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             at,
         } = shear.passing([a, b, c]);
         if self.tip == Tip::Narrow {
-            // Beside one edge it is about as wide as the next is farther away.
+            // Near one edge, the width there is about the extra distance to the next edge.
             let width = second - nearest;
             size = size.min(width * width.like_f64(WIDER_AT_TIPS));
         }
@@ -267,8 +267,7 @@ mod tests {
         PackedTriangle::of_mesh([a, b, c].map(Vec3::to_dvec3)).expect("has area")
     }
 
-    /// A closed ball of triangles around the origin: an octahedron, each face split `depth` times
-    /// in four.
+    /// A closed ball of triangles around the origin: an octahedron, each face split in four `depth` times.
     fn ball(depth: u32) -> Vec<PackedTriangle<f32>> {
         let unit = |v: DVec3| v.try_normalize().expect("not zero");
         let axis = |x, y, z| DVec3::new(x, y, z);
@@ -289,7 +288,7 @@ mod tests {
                 })
                 .collect();
         }
-        // A turn and a stretch, so that no plane of the mesh lies along an axis.
+        // Rotated and stretched, so that no plane of the mesh is parallel to an axis.
         let place = |v: DVec3| {
             let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
             Vec3::from_dvec3(DVec3::new(
@@ -304,10 +303,10 @@ mod tests {
             .collect()
     }
 
-    /// A place in the ball.
+    /// A point inside the ball.
     const INSIDE: Vec3<f32> = Vec3::new(0.11, -0.07, 0.05);
 
-    /// How many of `n` rays from inside, aimed at corners (or points on edges), meet nothing.
+    /// Returns how many of `n` rays from inside, aimed at corners or at points on edges, hit nothing.
     fn leaks(
         method: TriangleMethod,
         mesh: &[PackedTriangle<f32>],
@@ -407,7 +406,8 @@ mod tests {
             longest: (c - a).length(),
             ..triangle(a, b, c)
         };
-        // It is met 0.01 away, by a ray that starts a few roundings of the corners above it, and 10 away.
+        // A ray that starts a few roundings of the corners' coordinates above the triangle and hits it 0.01 away,
+        // and one that hits it 10 away.
         for (height, is_open) in [(1e-5, true), (1e-2, false)] {
             let ray = Ray {
                 origin: Vec3::new(0.0, 0.0, height),
@@ -427,7 +427,8 @@ mod tests {
         fn the_formulas_agree_away_from_edges(corners in prop::array::uniform3(prop::array::uniform3(-1.0..1.0_f32)),
                                               u in 0.1..0.45_f32, v in 0.1..0.45_f32, origin in prop::array::uniform3(-4.0..4.0_f32)) {
             let [a, b, c] = corners.map(Vec3::from);
-            // Along the surface of a sliver, the weak ones lose more digits than are asked for here.
+            // For directions along the surface of a sliver, the weak formulas lose more digits than tested for
+            // here.
             prop_assume!((b - a).cross(c - a).length() > 0.3);
             let t = triangle(a, b, c);
             let target = a + (b - a) * u + (c - a) * v;

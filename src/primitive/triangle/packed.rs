@@ -1,4 +1,4 @@
-//! The triangle as the kernels meet it, and how triangles hang together.
+//! The triangle in the form that kernels use, and the shared corners of triangles.
 
 use std::collections::HashMap;
 
@@ -9,38 +9,40 @@ use crate::primitive::kind::Corner;
 use crate::scene::{Scene, Shape, Triangle};
 use crate::simd::{Real, Vec3};
 
-/// What a face of a solid may be left out of, where the others hide and shade the same.
+/// How a face of a solid may be left out, since others hide and shade the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Culling {
-    /// Nothing.
+    /// In no way.
     Nothing,
-    /// What casts shadows from lights that it is turned to.
+    /// As an occluder of lights that it is turned towards.
     Lit,
-    /// What is seen by eyes, and casts shadows from lights, that it is turned away from.
+    /// For eyes, and as an occluder of lights, that it is turned away from.
     Far,
 }
 
-/// Where a triangle may slip between samples, however large it is: most of a mesh go on behind their corners.
+/// Where a triangle may slip between samples, whatever its size: in a mesh, most triangles continue beyond their
+/// corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tip {
     /// Nowhere.
     Nowhere,
-    /// Wherever it is narrow itself.
+    /// Wherever the triangle itself is narrow.
     Narrow,
-    /// Around this corner, which many faces share: what they surround is so many 64ths as wide as it is far from there.
+    /// Around this corner of many faces: the width of what they enclose is this many 64ths of the distance from the
+    /// corner.
     Round(Vertex, u8),
 }
 
 impl Tip {
-    /// [`Self::Round`] for something so many times as wide as it is far from the corner.
+    /// [`Self::Round`] for something whose width is `share` times the distance from the corner.
     pub fn round(which: Vertex, share: f64) -> Self {
-        // One that is nothing would be thin all along.
+        // With zero, it would be thin everywhere.
         let share = (share * WHOLE).ceil().clamp(1.0, f64::from(u8::MAX));
         Self::Round(which, share as u8)
     }
 }
 
-/// What is as wide as it is far from its tip.
+/// The share of a tip whose width equals the distance from it.
 pub const WHOLE: f64 = 64.0;
 
 /// One of the corners of a triangle.
@@ -55,7 +57,7 @@ pub enum Vertex {
 }
 
 impl Vertex {
-    /// All, in order.
+    /// All vertices, in order.
     pub const ALL: [Self; 3] = [Self::A, Self::B, Self::C];
 }
 
@@ -66,14 +68,14 @@ pub struct PackedTriangle<R> {
     pub corners: [Vec3<R>; 3],
     /// Unit normal, outwards for corners that are clockwise seen from outside.
     pub normal: Vec3<R>,
-    /// Whether it shares a corner with another triangle. Its neighbours then shadow it at the seam
-    /// unless secondary rays start a few roundings off the surface.
+    /// Whether it shares a corner with another triangle. At the seam, its neighbours then shadow it unless
+    /// secondary rays start a few roundings above the surface.
     pub in_mesh: bool,
-    /// Its smallest altitude.
+    /// Its smallest altitude, or the thickness of the mesh there if that is known and greater.
     pub thickness: R,
     /// Where it may slip between samples.
     pub tip: Tip,
-    /// What it may be left out of.
+    /// How it may be left out.
     pub culling: Culling,
     /// The length of its longest edge.
     pub longest: R,
@@ -82,7 +84,7 @@ pub struct PackedTriangle<R> {
 }
 
 impl<R: Real> PackedTriangle<R> {
-    /// A face of a mesh, as thick as it is by itself; `None` without an area.
+    /// A face of a mesh with the thickness of the triangle by itself; `None` without an area.
     pub fn of_mesh(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (c - a).cross(b - a).try_normalize()?;
@@ -113,7 +115,7 @@ impl<R: Real> PackedTriangle<R> {
         }
     }
 
-    /// Turns its outside in.
+    /// Turns it inside out.
     pub fn turn(&mut self) {
         self.corners.swap(1, 2);
         self.normal = -self.normal;
@@ -125,13 +127,14 @@ impl<R: Real> PackedTriangle<R> {
     }
 }
 
-/// A corner as a key: corners are one where their coordinates are equal.
+/// Converts a corner to a key: two corners are the same if their coordinates are equal.
 pub fn corner(point: DVec3) -> Corner {
     place_key(point)
 }
 
-/// Numbers for the corners of triangles: the same where they meet, which is where single precision could not tell
-/// the farthest of them apart. Double precision does not see seams that are noise in the last digits either.
+/// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not
+/// distinguish points at the largest coordinate. In double precision, too, this ignores gaps that are only noise in
+/// the last digits.
 pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]> {
     let all = triangles.iter().flat_map(|triangle| triangle.corners);
     let farthest = all.map(|corner| corner.to_dvec3().abs().max_element());
@@ -147,7 +150,7 @@ pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]>
     corners.map(|corners| corners.map(&mut number)).collect()
 }
 
-/// How many visible triangles meet at each corner.
+/// Counts the visible triangles that meet at each corner.
 pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
     let mut users = HashMap::new();
     for object in scene.visible_objects() {

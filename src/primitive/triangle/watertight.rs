@@ -4,23 +4,23 @@ use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// How much nearer to a ray something can be than the sheared plane shows it, which is no more oblique than the diagonal
-/// of a cube: a little less than 1/√3.
+/// Least ratio of a distance from the ray to the same distance in the sheared plane, which is at most as oblique as
+/// the diagonal of a cube: slightly less than 1/√3.
 const LEAST_ACROSS: f64 = 0.577;
 
-/// What the watertight test needs of a ray, computed once: the axis along which the direction is
-/// largest, turned to z, and the shear that lays the ray on it.
+/// Data that the watertight test derives from a ray once: the axis along which the direction is largest, which
+/// becomes z, and the shear that aligns the ray with it.
 #[derive(Clone, Copy, Debug)]
 pub struct Shear<L: SimdFloat> {
-    /// Where the axis is x, and where it is y.
+    /// The lanes whose major axis is x, and those where it is y.
     is_x: L::Mask,
     is_y: L::Mask,
-    /// The major axis, where all lanes agree on it.
+    /// The major axis, if all lanes have the same.
     common: Option<MajorAxis>,
-    /// Sheared x per depth.
+    /// Shift of x per unit of depth.
     pub x: L,
     y: L,
-    /// One over the direction along the axis.
+    /// One over the direction's component along the major axis.
     pub z: L,
 }
 
@@ -34,13 +34,13 @@ enum MajorAxis {
 /// How rays pass a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Passing<L: SimdFloat> {
-    /// Whether they go through it.
+    /// Whether they pass through it.
     pub inside: L::Mask,
-    /// How far its nearest edge is from them, ahead of their start.
+    /// Distance from the rays to the nearest edge, ahead of their start.
     pub nearest: L,
-    /// How far the next one is.
+    /// Distance to the second nearest edge.
     pub second: L,
-    /// Where along them the nearest is nearest.
+    /// Distance along the rays to where they are nearest to the nearest edge.
     pub at: L,
 }
 
@@ -77,7 +77,7 @@ impl<L: SimdFloat> Shear<L> {
         }
     }
 
-    /// The components in cyclic order, the axis last.
+    /// The components in cyclic order, the major axis last.
     #[inline(always)]
     fn turned(&self, v: Vec3<L>) -> [L; 3] {
         match self.common {
@@ -92,14 +92,15 @@ impl<L: SimdFloat> Shear<L> {
         }
     }
 
-    /// The number that belongs to each lane's axis.
+    /// Selects the value for each lane's major axis.
     #[inline(always)]
     fn pick(&self, x: L, y: L, z: L) -> L {
         L::select(self.is_x, x, L::select(self.is_y, y, z))
     }
 
-    /// Which way an edge between two sheared corners turns around the ray, the square of its distance from the ray, and
-    /// where along the ray that is. Behind its start, nothing is near.
+    /// Returns for an edge between two sheared corners: its orientation around the ray, the square of its distance
+    /// from the ray, and the distance along the ray where it is nearest. The square is infinite if that is behind
+    /// the start.
     #[inline(always)]
     fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L, L) {
         let (zero, one) = (self.x.like(L::Real::ZERO), self.x.like(L::Real::ONE));
@@ -107,7 +108,7 @@ impl<L: SimdFloat> Shear<L> {
         let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
         let share = share.max(zero).min(one);
         let (x_near, y_near) = (from[0] + x * share, from[1] + y * share);
-        // The sheared plane is not across the ray: without the part along it.
+        // The sheared plane is not perpendicular to the ray, so the component along the ray is removed.
         let along = (x_near * self.x + y_near * self.y) / self.z;
         let square = (x_near * x_near + y_near * y_near - along * along).max(zero);
         let at = (from[2] + (to[2] - from[2]) * share) * self.z;
@@ -115,7 +116,7 @@ impl<L: SimdFloat> Shear<L> {
         (from[0] * y - from[1] * x, square, at)
     }
 
-    /// How the ray passes the triangle of sheared corners.
+    /// Returns how the ray passes a triangle, given its sheared corners.
     #[inline(always)]
     pub fn passing(&self, [a, b, c]: [[L; 3]; 3]) -> Passing<L> {
         let edges = [
@@ -133,7 +134,7 @@ impl<L: SimdFloat> Shear<L> {
             nearest = nearest.min(square);
         }
         Passing {
-            // All edges turn the same way around it.
+            // All edges have the same orientation around the ray.
             inside: zero.less(least) | most.less(zero),
             nearest: nearest.sqrt(),
             second: second.sqrt(),
@@ -141,7 +142,8 @@ impl<L: SimdFloat> Shear<L> {
         }
     }
 
-    /// How far the triangle of sheared corners is from the ray, at least: as far as a box around it is from the axis.
+    /// A lower bound of the distance between the ray and a triangle with these sheared corners, by the box around
+    /// it.
     #[inline(always)]
     pub fn least_beside(&self, [a, b, c]: [[L; 3]; 3]) -> L {
         let x = a[0].min(b[0]).min(c[0]).max(-a[0].max(b[0]).max(c[0]));
@@ -149,8 +151,8 @@ impl<L: SimdFloat> Shear<L> {
         x.max(y) * self.x.like_f64(LEAST_ACROSS)
     }
 
-    /// How far the plane of sheared corners is, which edges turn around the ray like this. All three zero is a triangle
-    /// seen edge-on: 0/0 fails every comparison.
+    /// The distance to the plane of a triangle with these sheared corners and edge functions. All three functions
+    /// are zero for a triangle seen edge-on: 0/0 fails every comparison.
     #[inline(always)]
     pub fn distance(&self, [a, b, c]: [[L; 3]; 3], [u, v, w]: [L; 3]) -> L {
         (u * a[2] + v * b[2] + w * c[2]) * self.z / (u + v + w)
@@ -164,9 +166,9 @@ impl<L: SimdFloat> Shear<L> {
     }
 }
 
-/// Shear the corners so that the ray is the z axis, then three 2D edge functions. Each is computed
-/// from per-corner values, so two triangles get the same number, up to sign, on a shared edge: no
-/// ray slips between them. No multiplication here may be fused with an addition.
+/// Shears the corners so that the ray is the z axis, then evaluates three 2D edge functions. Each is computed from
+/// per-corner values, so two triangles get the same number, up to sign, on a shared edge: no ray slips between
+/// them. No multiplication here may be fused with an addition.
 ///
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
 #[inline(always)]
@@ -189,14 +191,14 @@ pub fn watertight<L: SimdFloat>(
     L::select(inside & zero.less(t), t, infinity)
 }
 
-/// The sheared corners, and which way each edge turns around the ray.
+/// Returns the sheared corners and the edge functions, whose signs are the edges' orientations around the ray.
 #[inline(always)]
 pub fn edges_of<L: SimdFloat>(
     ray: &Ray<L>,
     shear: &Shear<L>,
     triangle: &PackedTriangle<L::Real>,
 ) -> ([[L; 3]; 3], [L; 3]) {
-    // Written out: what runs in a closure of the standard library does not know the lanes.
+    // Written out, since a closure called by the standard library is not compiled with the lanes' instruction set.
     let [a, b, c] = triangle.corners;
     let a = shear.apply(ray.origin.like(a) - ray.origin);
     let b = shear.apply(ray.origin.like(b) - ray.origin);

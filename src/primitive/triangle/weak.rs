@@ -1,11 +1,11 @@
-//! Triangle formulas that fail somewhere, kept to show where.
+//! Triangle formulas that fail in some cases, kept to show where.
 
 use super::packed::PackedTriangle;
 use crate::primitive::ray::Ray;
 use crate::scene::TriangleMethod;
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// One of the formulas. A function of its own: only the lab calls it, from everywhere.
+/// Evaluates one of the formulas. Not inlined: only the lab uses it, but it is called from everywhere.
 #[inline(never)]
 pub fn weak<L: SimdFloat>(
     ray: &Ray<L>,
@@ -23,9 +23,9 @@ pub fn weak<L: SimdFloat>(
     )
 }
 
-/// The formula of the original program: where the ray meets the plane, then, edge by edge in clockwise
-/// order, whether the cross product with the edge points away from the normal. Every rounding of
-/// the hit moves it across the edge differently for each neighbour.
+/// The formula of the original program: intersects the ray with the plane, then checks for each edge in clockwise
+/// order whether the cross product with the edge points away from the normal. Each rounding of the hit shifts it
+/// across the edge differently for each neighbour.
 #[inline(always)]
 fn edges<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real>) -> L {
     let n: Vec3<L> = ray.origin.like(triangle.normal);
@@ -70,8 +70,8 @@ fn moller_trumbore<L: SimdFloat>(ray: &Ray<L>, triangle: &PackedTriangle<L::Real
     L::select(inside & zero.less(t) & t.less(infinity), t, infinity)
 }
 
-/// On which side of the planes through the ray's origin and each edge the ray goes. Neighbours get
-/// the same number on a shared edge, but three planes that meet in a corner do not meet exactly.
+/// Checks on which side of the planes through the ray's origin and each edge the ray is. Neighbours get the same
+/// number on a shared edge, but three planes through a corner do not intersect exactly there.
 ///
 /// Plücker's edge functions with the origin moved into the ray's; Davidovič, Engelhardt, Georgiev,
 /// Slusallek and Dachsbacher, "3D rasterization: a bridge between rasterization and ray casting",
