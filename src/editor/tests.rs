@@ -405,7 +405,7 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
     assert!(said.contains(lost), "{said}");
     assert_eq!(editor.scene().mesh_problems().count(), 0);
     assert_eq!(editor.scene().mesh_paths().len(), 1);
-    // Mesh paths in a text pasted into an unsaved document are resolved next to the first one.
+    // Mesh files of a scene text without a file are looked for next to the first file that it is saved to.
     let mut pasted = Document::from_text(text).expect("a scene");
     pasted.scene.load_meshes(None);
     editor.replace(pasted, None);
