@@ -26,8 +26,8 @@ const FLOOR: [f64; 3] = [196.0, 192.0, 186.0];
 /// Radius of the first light's marker, as a share of the diagonal of the objects' bounding box.
 const MARKER_SHARE: f64 = 0.02;
 
-/// Adds an object of this name, or a free variant of it. It gets a color pack of its own: a new one, or an unused one
-/// that was never edited.
+/// Adds an object of this name, with a number. It gets a color pack of its own: a new one, or an unused one that was
+/// never edited.
 pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{name} 1"));
     let colors = match shape {
@@ -169,8 +169,8 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
     }
 }
 
-/// Returns the name of an unused color pack that is either the default or has one of these colours unedited. Other
-/// unused packs are left alone: the user may have made them for later.
+/// Returns the name of an unused color pack that is the default one, or a new one in one of these colours. Other
+/// unused ones are left alone: the user may have made them for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     let worn = scene.worn_packs();
     let is_new = |pack: &ColorPack| {
@@ -181,7 +181,7 @@ fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     free.map(|(name, _)| name.clone())
 }
 
-/// Appends a color pack under this name, or a free variant of it; returns its index and its name.
+/// Appends a color pack under this name, with a new number if it is taken; returns its index and its name.
 fn insert_pack(scene: &mut Scene, name: &str, pack: ColorPack) -> (usize, String) {
     let name = free_pack_name(scene, name);
     let (index, _) = scene.packs_mut().insert_full(name.clone(), pack);

@@ -226,8 +226,8 @@ impl AnimationState {
     }
 
     /// Sets a key at the shown time for each tracked value that the edit from `scene` to `next` has changed, or
-    /// replaced, to something other than what is shown; in `next`, the scene's own value is restored. Returns whether
-    /// any key was set.
+    /// overwritten, with something other than what is shown; in `next`, the scene's own value is restored. Returns
+    /// whether any key was set.
     pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) -> bool {
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next

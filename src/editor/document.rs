@@ -171,8 +171,8 @@ impl Editor {
         &self.selection
     }
 
-    /// The middle of the selection, or of the whole scene if nothing with a position is selected; the origin if the
-    /// scene is empty.
+    /// The middle of the selection, or of the whole scene if nothing with a position is selected; the origin if
+    /// neither has one.
     pub fn middle(&self) -> DVec3 {
         let scene = self.shown();
         let selected = self.selection.middle(scene);
@@ -313,7 +313,7 @@ impl Editor {
     /// The text of the document as it would be saved.
     ///
     /// # Errors
-    /// [`SceneError::Unwritable`], for a scene that has no text.
+    /// [`SceneError::Unwritable`], for a scene that cannot be serialized.
     pub fn to_text(&self) -> Result<String, SceneError> {
         self.document().to_text()
     }

@@ -39,7 +39,7 @@ pub enum Edit {
     Light(usize, Light, &'static str),
     /// Replaces the color pack at this index, which keeps its name.
     Pack(usize, ColorPack, &'static str),
-    /// Adds an object of this name, or a free variant of it, and this shape.
+    /// Adds an object of this name, with a number, and this shape.
     AddObject(&'static str, Shape),
     /// Adds the parts of a mesh file as objects.
     Import(Vec<Part>),

@@ -100,7 +100,7 @@ impl Editor {
     /// Looks through the shot camera to show the animation, unless the user has chosen to stay outside.
     fn show_time(&mut self) {
         let timeline = &mut self.animation_state.timeline;
-        // Where the shot camera has no flight, a view that was flown to is kept: it may become the next key.
+        // Outside the time of the shot camera's flight, a view that was flown to is kept: it may become the next key.
         let is_kept = timeline.is_flown && !timeline.is_in_flight(&self.scene.animation);
         // While recording, the camera is flown by hand, not by its existing keys.
         let is_free = timeline.stays_outside || timeline.recording.is_some() || is_kept;

@@ -9,7 +9,8 @@ use crate::scene::Scene;
 
 /// Most steps that can be undone; older ones are dropped.
 const MOST_STEPS: usize = 500;
-/// Most memory, in bytes, that undo steps may use on their own; older ones are dropped, except for the last step.
+/// Most memory, in bytes, that undo steps may take beyond what they share; older ones are dropped, except for the
+/// last step.
 const MOST_BYTES: usize = 128 << 20;
 
 /// A state that undo or redo can return to.
@@ -73,8 +74,8 @@ impl History {
         }
     }
 
-    /// Keeps the redo steps if a change was only one of the camera, and drops them otherwise. Redo states that had
-    /// the camera where it was before the change get the camera of after the change.
+    /// Keeps the redo steps if a change was only one of the camera, and drops them otherwise. The next redo states,
+    /// as far as they have the camera of before the change, get the new camera.
     fn keep_undone(&mut self, before: &Scene, after: &Scene) {
         let looking = |scene: &Scene| Scene {
             camera: after.camera.clone(),

@@ -9,30 +9,30 @@ use crate::scene::{Bookmark, Names, Scene, Shape};
 /// Most steps that are tried in search of a place for a copy.
 const MOST_STEPS: u32 = 1_000;
 
-/// Returns an unused object name like `wanted`.
+/// Returns an unused object name: `wanted`, or that with a new number.
 pub fn free_object_name(scene: &Scene, wanted: &str) -> String {
     let taken = scene.objects.iter().map(|object| &*object.name);
     Names::new(taken).take(wanted)
 }
 
-/// Returns an unused light name like `wanted`.
+/// Returns an unused light name: `wanted`, or that with a new number.
 pub fn free_light_name(scene: &Scene, wanted: &str) -> String {
     let taken = scene.lights.iter().map(|light| &*light.name);
     Names::new(taken).take(wanted)
 }
 
-/// Returns an unused color pack name like `wanted`.
+/// Returns an unused color pack name: `wanted`, or that with a new number.
 pub fn free_pack_name(scene: &Scene, wanted: &str) -> String {
     Names::new(scene.color_packs.keys().map(String::as_str)).take(wanted)
 }
 
-/// Returns an unused group name like `wanted`.
+/// Returns an unused group name: `wanted`, or that with a new number.
 pub fn free_group_name(scene: &Scene, wanted: &str) -> String {
     let taken = scene.objects.iter().map(|object| &*object.group);
     Names::new(taken).take(wanted)
 }
 
-/// Returns an unused bookmark name like `wanted`.
+/// Returns an unused bookmark name: `wanted`, or that with a new number.
 pub fn free_bookmark_name(bookmarks: &[Bookmark], wanted: &str) -> String {
     let taken = bookmarks.iter().map(|bookmark| &*bookmark.name);
     Names::new(taken).take(wanted)

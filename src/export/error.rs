@@ -137,7 +137,8 @@ impl VideoError {
     }
 }
 
-/// The end of what another program said, which tells why it failed. What would move a terminal's cursor is left out.
+/// Returns the end of another program's output, which tells why it failed. Control characters, which could move a
+/// terminal's cursor, become spaces.
 pub fn last_lines(said: &[u8]) -> String {
     let end = &said[said.len().saturating_sub(MOST_SAID)..];
     let said = String::from_utf8_lossy(end);

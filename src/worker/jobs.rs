@@ -69,8 +69,8 @@ impl JobKind {
 
     /// Returns whether a new job of this kind stops a running one, which starts over later: if it is for the same
     /// thread and more urgent, or replaces it. A running thumbnail is not stopped, as it would be done before
-    /// anything was gained; a thumbnail stops no quality measurement; nothing stops a picture that is being saved. A
-    /// study of the lab is stopped by jobs of either crew: what measures time cannot be paused.
+    /// anything was gained; a thumbnail stops no quality measurement; no new job stops a picture that is being saved.
+    /// A study of the lab is stopped by jobs of either crew: what measures time cannot be paused.
     pub fn preempts(self, running: Self) -> bool {
         let is_same = self.crew() == running.crew() || running == Self::Lab;
         let replaces = self == running && self.is_replaced();
@@ -229,7 +229,7 @@ pub struct ExportState {
     pub done: Exported,
     /// Time that the render thread has spent on it, without waiting.
     pub busy: Duration,
-    /// Whether it is paused by the user.
+    /// Whether it is paused until it is told to resume.
     pub is_paused: bool,
     /// A small picture of the frame that was traced last.
     pub last: Option<Arc<Image>>,

@@ -26,7 +26,7 @@ pub enum Job {
 }
 
 impl Job {
-    /// How urgent it is.
+    /// The kind of the job, which determines its urgency.
     pub fn kind(&self) -> JobKind {
         match self {
             Self::Live(_) => JobKind::Live,
@@ -79,7 +79,7 @@ impl Job {
 /// A running job.
 #[derive(Debug)]
 pub struct Running {
-    /// How urgent it is.
+    /// The kind of the job, which determines its urgency.
     pub kind: JobKind,
     /// Revision of the scene, for live and still pictures; 0 for others.
     pub revision: u64,
@@ -167,7 +167,7 @@ impl Mailbox {
                 running.control.pause();
             }
         }
-        // The newest thumbnails are those that are visible.
+        // The newest thumbnails are the ones wanted now.
         let index = match job {
             Job::Thumbnail(_) => 0,
             _ => self.waiting.len(),

@@ -27,7 +27,7 @@ const CALM: Duration = Duration::from_millis(100);
 
 /// How a job ended.
 enum JobOutcome {
-    /// It is done, or failed for good.
+    /// There is nothing more to do for it.
     Ended,
     /// It was stopped, or has more to do.
     Unfinished,
