@@ -28,6 +28,9 @@ pub const LONGEST_IN_APNG: f64 = 65_535.0;
 
 /// Writes a GIF into `file`, which is to be moved to `path`. Reducing the frames to 256 colours takes several times
 /// as long as tracing them; they are packed on the threads of the current rayon pool.
+///
+/// # Errors
+/// [`VideoError`].
 pub fn gif(
     sequence: &Sequence,
     (file, path): (&File, &Path),
@@ -143,6 +146,9 @@ fn nearest_fraction(number: f64) -> (u16, u16) {
 }
 
 /// Writes an animated PNG into `file`, which is to be moved to `path`.
+///
+/// # Errors
+/// [`VideoError`].
 pub fn apng(
     sequence: &Sequence,
     (file, path): (&File, &Path),

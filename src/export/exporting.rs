@@ -108,6 +108,9 @@ impl std::fmt::Debug for Exporting {
 
 impl Exporting {
     /// Creates the folder if needed, and reads its manifest.
+    ///
+    /// # Errors
+    /// [`ExportError`], if the folder cannot be made or read.
     pub fn new(sequence: Sequence) -> Result<Self, ExportError> {
         sequence.prepare()?;
         Ok(Self {

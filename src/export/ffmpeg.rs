@@ -18,6 +18,9 @@ use crate::words::for_shell;
 
 /// Has ffmpeg make a video in the file `unfinished`, which is to be moved to `path`, with these arguments for the
 /// codec.
+///
+/// # Errors
+/// [`VideoError`].
 pub fn by_ffmpeg(
     sequence: &Sequence,
     (unfinished, path): (&Path, &Path),

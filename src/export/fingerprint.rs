@@ -11,6 +11,9 @@ use crate::scene::{ColorPack, Packs, Scene};
 
 /// Returns a hash of everything that determines the bytes of a frame: what is visible in it, how it is traced, the
 /// format and the version of the program.
+///
+/// # Errors
+/// [`ExportError::Unwritable`], for a scene that cannot be serialized.
 pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
     let text = ron::to_string(&bare(shown))?;
     let mut hasher = blake3::Hasher::new();

@@ -44,6 +44,9 @@ pub fn in_order<F: Send, P: Send>(
 }
 
 /// Returns the bytes of a frame's file.
+///
+/// # Errors
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
 pub fn as_it_is(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
     let wrong = |source| VideoError::unreadable(&path, source);
@@ -67,6 +70,9 @@ fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), 
 }
 
 /// Returns a frame as PPM.
+///
+/// # Errors
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
 pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
     let image = Image::from(&read(sequence, frame)?);
@@ -77,6 +83,9 @@ pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
 }
 
 /// Reads a frame of any format, and converts it to 8 bits.
+///
+/// # Errors
+/// [`VideoError::Frame`], [`VideoError::Replaced`].
 pub fn read(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
     let path = sequence.path(frame);
     let image = decode(&path).map_err(|source| VideoError::unreadable(&path, source))?;

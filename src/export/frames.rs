@@ -32,6 +32,9 @@ pub enum FramesError {
 
 impl Frames {
     /// All frames from 1 to `last`.
+    ///
+    /// # Errors
+    /// [`FramesError::TooMany`].
     pub fn up_to(last: u64) -> Result<Self, FramesError> {
         if last > MOST {
             return Err(FramesError::TooMany);
@@ -40,6 +43,9 @@ impl Frames {
     }
 
     /// Parses a set: numbers and ranges, separated by commas; a range may have a step.
+    ///
+    /// # Errors
+    /// [`FramesError`]: what was expected.
     pub fn parse(text: &str) -> Result<Self, FramesError> {
         let expected = || FramesError::Syntax(text.to_owned());
         let mut frames = Vec::new();

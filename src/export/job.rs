@@ -61,6 +61,9 @@ pub struct JobFiles {
 /// Writes the template of a job to `path`, and the scene beside it, unless `file`, which holds this document, is that
 /// very file. A farm gets no other files: meshes in files of their own are stored in the scene, in a copy of another
 /// name.
+///
+/// # Errors
+/// [`JobError`]: what could not be written.
 pub fn write_job(
     document: &Document,
     file: Option<&Path>,

@@ -22,6 +22,9 @@ pub struct PatternError {
 impl Pattern {
     /// Parses a pattern with one `%d`, or `%05d` for at least five digits. The width does not depend on the number of
     /// frames, so that names stay the same when frames are added.
+    ///
+    /// # Errors
+    /// [`PatternError`]: what was expected.
     pub fn parse(text: &str) -> Result<Self, PatternError> {
         let wrong = |why: &str| {
             Err(PatternError {

@@ -323,6 +323,9 @@ fn statistics(said: &str) -> Option<(Duration, u64)> {
 }
 
 /// Has POV-Ray draw a scene, in a temporary folder that is removed afterwards. `control` can stop it.
+///
+/// # Errors
+/// [`PovrayError`].
 pub fn by_povray(
     scene: &Scene,
     threads: usize,

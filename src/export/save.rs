@@ -35,6 +35,9 @@ pub fn save_picture(
 }
 
 /// Writes the output of `encode` to a new file beside `path`, to be moved there.
+///
+/// # Errors
+/// [`ExportError`].
 pub fn write_beside(
     path: &Path,
     encode: impl FnOnce(&mut BufWriter<&File>) -> Result<(), ImageError>,
@@ -55,6 +58,9 @@ pub fn write_beside(
 
 /// Checks that a file can be written at `path`, before its contents are computed. Unfinished files that killed
 /// programs have left beside it are removed.
+///
+/// # Errors
+/// [`ExportError::Disk`].
 pub fn check_place(path: &Path) -> Result<(), ExportError> {
     let beside = NewFile::beside(path).map_err(|source| disk(path, source))?;
     if let Some(folder) = beside.path().parent() {

@@ -68,6 +68,9 @@ pub enum SequenceError {
 impl Sequence {
     /// A sequence of frames of a scene, all of them if `frames` is `None`; size and sampling are those of the scene's
     /// `render`.
+    ///
+    /// # Errors
+    /// [`SequenceError`], if a frame is beyond the end of the animation, or the animation has too many frames.
     pub fn new(
         scene: Arc<Scene>,
         frames: Option<Frames>,
@@ -144,6 +147,9 @@ impl Sequence {
     }
 
     /// Makes the folder if it does not exist, and removes unfinished files that killed programs have left there.
+    ///
+    /// # Errors
+    /// [`ExportError::Disk`].
     pub fn prepare(&self) -> Result<(), ExportError> {
         make_folder(&self.folder).map_err(|source| disk(&self.folder, source))?;
         remove_leftovers(&self.folder);
@@ -151,6 +157,9 @@ impl Sequence {
     }
 
     /// Reads the manifest of the folder.
+    ///
+    /// # Errors
+    /// [`ExportError::Unreadable`].
     pub fn manifest(&self) -> Result<Manifest, ExportError> {
         let read = Manifest::read(&self.folder);
         read.map_err(|source| ExportError::Unreadable {

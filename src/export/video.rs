@@ -66,6 +66,9 @@ impl Video {
     }
 
     /// The format for a file's extension.
+    ///
+    /// # Errors
+    /// [`VideoError::Unknown`].
     pub fn of_path(path: &Path) -> Result<Self, VideoError> {
         let ending = path.extension().and_then(OsStr::to_str);
         let video = ending.and_then(Self::of_ending);

@@ -38,6 +38,9 @@ pub struct Writers {
 
 impl Writers {
     /// Starts `count` threads.
+    ///
+    /// # Errors
+    /// [`ExportError::Disk`], if the system refuses a thread.
     pub fn start(sequence: &Arc<Sequence>, count: usize) -> Result<Self, ExportError> {
         let (jobs, to_write) = sync_channel::<WriteJob>(1);
         let (to_return, results) = channel();

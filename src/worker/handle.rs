@@ -37,6 +37,9 @@ pub struct Worker {
 impl Worker {
     /// Starts the render threads, each with `threads` tracing threads of its own: of the two crews, only one traces
     /// at a time. They call `wake` after every frame and event.
+    ///
+    /// # Errors
+    /// [`RenderThreadError`], if the system refuses a thread.
     pub fn new(
         threads: Option<usize>,
         wake: impl Fn() + Send + Sync + 'static,
