@@ -1,4 +1,4 @@
-//! What panels ask for, and what the user is told.
+//! Actions requested by panels, and messages to the user.
 
 use glam::DVec3;
 
@@ -19,20 +19,20 @@ pub enum Mode {
     HighRes,
 }
 
-/// Something that a panel asks for.
+/// A request of a panel.
 #[derive(Clone, Debug)]
 pub enum Action {
     /// Change the scene.
     Edit(Edit),
     /// Move the camera as part of a flight.
     Fly(Motion),
-    /// Move the camera around a point, turned to the right and upwards by so many radians.
+    /// Orbit the camera about a point; yaw to the right and pitch upwards, in radians.
     Orbit(DVec3, (f64, f64)),
-    /// Select something, and show it, or the last of it, in the inspector.
+    /// Select something. The inspector shows it, or the last of several items.
     Select(Selection),
-    /// What comes is a step of its own in the history.
+    /// Start a gesture: the edits that follow form a new undo step.
     BeginGesture,
-    /// Take back what was done since the gesture began.
+    /// Revert everything since the gesture began.
     CancelGesture,
     /// Step back in the history.
     Undo,
@@ -40,22 +40,24 @@ pub enum Action {
     Redo,
     /// Show something else in the picture area.
     Show(Mode),
-    /// Something about the timeline.
+    /// Change the timeline.
     Time(Time),
-    /// Say what the last step has done besides what it is called; taken back with it.
+    /// Tell the user about side effects of the last step that its name does not mention; undoing the step dismisses
+    /// the message.
     Tell(String),
 }
 
-/// What messages about what the last step has done are about.
+/// Value of [`Message::about`] for messages about the effects of the last step.
 pub const STEP: &str = "step";
 
-/// Something the user should read.
+/// A message for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
     /// Whether something went wrong.
     pub is_error: bool,
-    /// What happened and, for errors, what to do; nothing, where an action was only begun again.
+    /// What happened and, for errors, what to do. Empty if an action merely starts again: then earlier messages about
+    /// it are dismissed.
     pub text: String,
-    /// The action that it is about: what was said of it is forgotten when it is begun again. Empty for none.
+    /// The action that the message is about: when the action starts again, the message is dismissed. Empty for none.
     pub about: &'static str,
 }

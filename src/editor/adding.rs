@@ -1,4 +1,4 @@
-//! New things in a scene.
+//! Adding and duplicating objects, lights and color packs.
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::scene::{
     ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
 };
 
-/// Colours that new things wear, one after the other: told apart from each other, and from a grey floor.
+/// Colours of new objects, used in turn: easy to tell from each other and from a grey floor.
 const COLORS: [[f64; 3]; 8] = [
     [226.0, 102.0, 82.0],
     [86.0, 142.0, 214.0],
@@ -23,10 +23,11 @@ const COLORS: [[f64; 3]; 8] = [
 ];
 /// The colour of floors.
 const FLOOR: [f64; 3] = [196.0, 192.0, 186.0];
-/// How large the marker of the first light is, as a share of the scene.
+/// Radius of the first light's marker, as a share of the diagonal of the objects' bounding box.
 const MARKER_SHARE: f64 = 0.02;
 
-/// Adds an object of this name, or one like it. It wears a pack of its own: a new one, or one as new that nothing wears.
+/// Adds an object of this name, with a number. It gets a color pack of its own: a new one, or an unused one that was
+/// never edited.
 pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{name} 1"));
     let colors = match shape {
@@ -45,7 +46,7 @@ pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     Item::object(scene.objects.len() - 1)
 }
 
-/// Adds a light with a marker like those of the others.
+/// Adds a light with a marker like those of the other lights.
 pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
     let name = free_light_name(scene, "Light 1");
     let radius = marker_radius(scene);
@@ -61,21 +62,23 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
         marker: Some(LightObj { radius, color_pack }),
         visible: true,
     };
-    // Two in one place would look like one.
+    // Two lights in one place would look like one.
     let step = step_of_light(scene, &light);
     light.position += way_past(scene, &[Spot::light(position)], (step, 0));
     scene.lights.push(light);
     Item::light(scene.lights.len() - 1)
 }
 
-/// From a light to one beside it. Far away, the radius of a marker may be less than a rounding.
+/// Returns the offset from a light to a copy beside it. Far from the origin, the radius of a marker may be below
+/// rounding precision, hence the lower bound.
 pub fn step_of_light(scene: &Scene, light: &Light) -> DVec3 {
     let marker = light.marker.as_ref();
     let radius = marker.map_or_else(|| marker_radius(scene), |marker| marker.radius);
     DVec3::X * (4.0 * radius).max(light.position.x.abs() * 1e-9)
 }
 
-/// How large the marker of a light is that has none yet: as those of the others, or as the scene is large.
+/// Returns the marker radius for a light that has no marker yet: that of another light's marker, or else in
+/// proportion to the size of the scene.
 pub fn marker_radius(scene: &Scene) -> f64 {
     let mut lights = scene.lights.iter();
     let like_others = lights.find_map(|light| Some(light.marker.as_ref()?.radius));
@@ -87,12 +90,13 @@ pub fn marker_radius(scene: &Scene) -> f64 {
     radius.unwrap_or(LightObj::default().radius)
 }
 
-/// Adds a pack.
+/// Adds a color pack.
 pub fn add_pack(scene: &mut Scene) -> Item {
     Item::pack(insert_pack(scene, "pack 1", ColorPack::default()).0)
 }
 
-/// A copy behind the original in its list, and beside it in the scene.
+/// Inserts a copy of an item after the original in its list; the copy of a light or object is placed beside the
+/// original.
 pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
     let Item { kind, index } = item;
     match kind {
@@ -127,7 +131,7 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
     })
 }
 
-/// A copy of a light or object, so far from it, has the keys of its values.
+/// Copies the animation tracks of a light or object to its copy, which is offset by `by`.
 fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, by: DVec3) {
     let tracks = scene.animation.tracks.iter();
     let own = tracks.filter(|track| track.target.owner() == Some(owner));
@@ -137,7 +141,7 @@ fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, by: DVec3) {
     }
 }
 
-/// A copy of its pack for the object in this place alone.
+/// Gives the object at `index` its own copy of its color pack, if others use that pack too.
 pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     let Some(object) = scene.objects.get(index) else {
         return;
@@ -155,7 +159,7 @@ pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     }
 }
 
-/// What a new thing wears.
+/// Returns the color pack for a new object.
 fn new_pack(color: [f64; 3]) -> ColorPack {
     let color = DVec3::from_array(color);
     ColorPack {
@@ -165,7 +169,8 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
     }
 }
 
-/// A pack that nothing wears, and that is as new in one of these colours: others somebody may have made for later.
+/// Returns the name of an unused color pack that is the default one, or a new one in one of these colours. Other
+/// unused ones are left alone: the user may have made them for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     let worn = scene.worn_packs();
     let is_new = |pack: &ColorPack| {
@@ -176,7 +181,7 @@ fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     free.map(|(name, _)| name.clone())
 }
 
-/// Puts a pack behind the others, under this name or one like it: its place and its name.
+/// Appends a color pack under this name, with a new number if it is taken; returns its index and its name.
 fn insert_pack(scene: &mut Scene, name: &str, pack: ColorPack) -> (usize, String) {
     let name = free_pack_name(scene, name);
     let (index, _) = scene.packs_mut().insert_full(name.clone(), pack);

@@ -1,4 +1,4 @@
-//! What is on show of a scene that moves, and what the timeline's actions do.
+//! The state of an animated scene at the playhead, and the timeline's effect on it.
 
 use std::sync::Arc;
 
@@ -7,28 +7,29 @@ use super::timeline::{MEASURED_AT, Timeline, ViewState};
 use crate::animate::{CameraPath, Landmark, Worst, ends_of, pose, shot, worst_off};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
-/// The finest tolerance of the slider, in pixels.
+/// Smallest tolerance of the slider, in pixels.
 const FINEST: f64 = 0.05;
-/// Keys that are more pixels off a recording were moved by hand: nobody asks for as rough ones.
+/// Deviation from the recording, in pixels, beyond which keys must have been moved by hand: nobody chooses a
+/// tolerance that coarse.
 const FARTHEST: f64 = 100.0;
-/// Flights that were made of recordings are known, so many of them.
+/// Most key lists made of recordings that are remembered.
 const MOST_MADE: usize = 16;
-/// Keys from both ends of a flight that may tell when it was recorded.
+/// Keys looked at from each end of a flight to find out which time span the recording covers.
 const TELLING: usize = 8;
 
-/// What waits for the survey of a take.
+/// Work that waits for the survey of a take: what its samples see.
 #[derive(Clone, Debug)]
 pub enum Pending {
-    /// A flight that was recorded becomes keys.
+    /// Turn a recorded flight into keys.
     Keep(Arc<Take>),
-    /// The keys of the take are made anew, as near as so many pixels.
+    /// Simplify the take again, with this tolerance in pixels.
     Simplify(Arc<Take>, f64),
-    /// How far the keys are off is measured.
+    /// Measure how far the keys deviate from the take.
     Measure(Arc<Take>),
 }
 
 impl Pending {
-    /// The take that waits.
+    /// The take whose survey is awaited.
     pub fn take(&self) -> &Arc<Take> {
         match self {
             Self::Keep(take) | Self::Simplify(take, _) | Self::Measure(take) => take,
@@ -36,22 +37,22 @@ impl Pending {
     }
 }
 
-/// A scene, its path and its timeline, and what they come to at the time of the playhead.
+/// A scene with its camera path and timeline, and the scene as shown at the playhead.
 #[derive(Debug)]
 pub struct AnimationState {
     pub timeline: Timeline,
-    /// The scene that the rest was made from.
+    /// The scene that the other fields are derived from.
     scene: Arc<Scene>,
     pub path: CameraPath,
     pub shown: Arc<Scene>,
-    /// Time and camera that `shown` was made for.
+    /// The time in seconds that `shown` was made for, and whether through the shot camera.
     made_for: (f64, bool),
     pub revision: u64,
-    /// What the samples of a take see: to find out takes rays, which are not traced here.
+    /// What the samples of a take see. Finding out requires tracing rays, which is done elsewhere.
     pub survey: Option<(Arc<Take>, Vec<Vec<Landmark>>)>,
-    /// What is done with the survey once it is there.
+    /// What to do once the survey arrives.
     pub pending: Option<Pending>,
-    /// Keys that were made of recordings, and how far they might be off, in pixels.
+    /// Key lists made of recordings, each with the tolerance it was made with, in pixels.
     made: Vec<(f64, Vec<Key<Camera>>)>,
 }
 
@@ -72,14 +73,14 @@ impl AnimationState {
         animation_state
     }
 
-    /// Measures how far the keys are off the recording, as soon as it is known what that saw. The slider
-    /// stands there, until it is moved.
+    /// Measures how far the keys deviate from the recording, or waits for the survey that this needs. Until the
+    /// tolerance slider is moved, it is set to that deviation.
     pub fn measure(&mut self) {
         let animation = &self.scene.animation;
         let take = animation.take.as_ref();
         let take = take.filter(|_| !animation.keys.is_empty()).cloned();
         self.timeline.worst = None;
-        // A recorded flight that waits is not to be forgotten.
+        // Only a pending measurement may be dropped: a recorded flight that waits to become keys must not be lost.
         self.pending
             .take_if(|pending| matches!(pending, Pending::Measure(_)));
         let Some(take) = take else {
@@ -101,19 +102,21 @@ impl AnimationState {
         } else if off > FARTHEST && self.made.is_empty() {
             self.timeline.is_edited = true;
         } else if off.is_finite() && self.made.is_empty() {
-            // As the slider shows it: a hundredth more or less is no wish of the user's.
+            // Rounded up to hundredths, as the slider shows it, so that reading the slider back is not taken for a
+            // change.
             self.timeline.tolerance = (off.max(FINEST) * 100.0).ceil() / 100.0;
             let keys = animation.keys.clone();
             self.note_made(self.timeline.tolerance, keys);
         }
     }
 
-    /// From when to when the recording is flown in these keys: what is left of those that were made of it tells, by
-    /// their times, whether the flight was stretched; where nothing is known of it, the first and the last key.
+    /// Returns the start and end time of the recording within `keys`. Keys left over from those made of the recording
+    /// show, by their times, whether the flight was stretched; if no such key is known, the first and the last key
+    /// are taken as the ends.
     pub fn flown(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
         let made = self.made.iter().rev().map(|(_, made)| made);
         let mut told = made.filter_map(|made| {
-            // Where a flight waits, or comes back, several are alike and tell nothing.
+            // A flight that pauses or returns has several equal keys, which tell nothing.
             let times = |key: &Key<Camera>| {
                 let mut same = made.iter().filter(|other| other.value == key.value);
                 let only = same.next().filter(|_| same.next().is_none())?;
@@ -130,7 +133,7 @@ impl AnimationState {
         told.next().or_else(ends)
     }
 
-    /// These keys were made of the recording with this tolerance.
+    /// Notes that `keys` were made of the recording with this tolerance, in pixels.
     pub fn note_made(&mut self, tolerance: f64, keys: Vec<Key<Camera>>) {
         self.made.retain(|(_, other)| *other != keys);
         self.made.push((tolerance, keys));
@@ -138,13 +141,13 @@ impl AnimationState {
         self.made.drain(..excess);
     }
 
-    /// What the samples of a take see, if that is known.
+    /// What the samples of `take` see, if its survey has arrived.
     pub fn seen_by(&self, take: &Arc<Take>) -> Option<&[Vec<Landmark>]> {
         let (of, seen) = self.survey.as_ref()?;
         Arc::ptr_eq(of, take).then_some(seen.as_slice())
     }
 
-    /// For another document; how it is played stays.
+    /// Returns the state for another document; the playback settings stay.
     pub fn start_again(&self, scene: &Arc<Scene>) -> Self {
         let mut new = Self::new(scene);
         new.timeline.repeat = self.timeline.repeat;
@@ -153,20 +156,20 @@ impl AnimationState {
         new
     }
 
-    /// The picture is that of the view from now on.
+    /// Switches the picture from the shot camera to the view.
     pub fn look_at_view(&mut self) {
-        // From outside one may fly while it plays.
+        // Playback goes on if the view was outside the shot camera already: one may fly while it plays.
         self.timeline.is_playing &= !self.timeline.wants_shot;
         self.timeline.wants_shot = false;
         self.timeline.is_flown = true;
     }
 
-    /// Looks at what was looked at before a step that is taken back, or done again, on the way to this scene.
+    /// On undo or redo of a step that leads to the scene `there`: restores the view from `before` that step.
     pub fn look_again(&mut self, before: ViewState, there: &Scene) {
         self.timeline.look_again(before, &self.scene, there);
     }
 
-    /// Takes up what has changed: the scene, the time, the camera that is looked through.
+    /// Updates the shown scene after a change of the scene, the time or the camera that is looked through.
     pub fn update(&mut self, scene: &Arc<Scene>) {
         let is_new = !Arc::ptr_eq(scene, &self.scene);
         if is_new {
@@ -198,7 +201,7 @@ impl AnimationState {
         self.shown = shown;
     }
 
-    /// The scene with the objects in these places as they are on show.
+    /// Returns the scene with the objects at these indices in the shape and place that is shown.
     pub fn posed(&self, scene: &Scene, places: &[usize]) -> Scene {
         let mut posed = scene.clone();
         for &index in places {
@@ -214,16 +217,17 @@ impl AnimationState {
         posed
     }
 
-    /// What plays stops where it is on show: a drag of what has keys would leave one in every frame.
+    /// Pauses playback at the shown frame: dragging something that has keys would otherwise leave a key in every
+    /// frame.
     pub fn pause(&mut self, animation: &Animation) {
         if self.timeline.is_playing {
             self.timeline.play(false, animation);
         }
     }
 
-    /// What has keys gets one at the time that is on show, where the edit from `scene` to `next`
-    /// has changed it, or has put something else in place of what is on show; the scene's own value stays. Whether
-    /// anything gets one.
+    /// Sets a key at the shown time for each tracked value that the edit from `scene` to `next` has changed, or
+    /// overwritten, with something other than what is shown; in `next`, the scene's own value is restored. Returns
+    /// whether any key was set.
     pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) -> bool {
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next
@@ -232,10 +236,10 @@ impl AnimationState {
             .iter()
             .map(|track| track.target.clone())
             .collect();
-        // Positions in lists stay; each scene has its own.
+        // Owners are resolved once for each scene, as their list indices may differ.
         let scenes = [scene, &self.shown, &*next];
         let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
-        // To put one value back may put others of the same object back: all are looked at before.
+        // Restoring one value may restore others of the same object, so all values are read first.
         let values = |(track, target): (usize, &Target)| {
             let (own, new) = (in_scene.get(scene, target)?, in_next.get(next, target)?);
             let is_touched = new != own || replaced.holds(target, in_scene.index(target));
@@ -258,8 +262,9 @@ impl AnimationState {
     }
 }
 
-/// Puts the own shape of an object of `scene` back into `next`, where it is as shown but for its place: moved to and fro,
-/// its corners would be rounded. Whether that is so; given are its places in the three.
+/// Restores the object's shape from `scene` in `next`, if its shape there equals the shown one: moving it to the
+/// shown place and back would round its corners. Returns whether it did; `places` holds the object's index in
+/// `scene`, `shown` and `next`.
 fn restore_shape(
     target: &Target,
     places: [Option<usize>; 3],

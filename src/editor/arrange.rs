@@ -1,25 +1,25 @@
-//! The order of objects: groups are listed where their first members are, with all of them.
+//! The order of objects: a group is listed in the place of its first member, with all its members.
 
 use std::collections::{HashMap, HashSet};
 
 use super::item::Item;
 use crate::scene::{List, Object, Scene};
 
-/// Objects that go elsewhere in their list, which then is in the order in which it is shown.
+/// A move of objects within their list, which is in display order afterwards.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Arrangement {
-    /// The places of those that go.
+    /// Indices of the objects that move.
     pub objects: Vec<usize>,
-    /// The place of the one beside which they go; it is none of them.
+    /// Index of the object next to which they are put; not one of `objects`.
     pub anchor: usize,
-    /// Whether they go behind it.
+    /// Whether they are put after the anchor instead of before it.
     pub is_after: bool,
-    /// The group that they are in from then on, none if it is empty; `None` for the one that each is in.
+    /// The group that they are put into, empty for no group; `None` keeps the group of each.
     pub group: Option<String>,
 }
 
 impl Arrangement {
-    /// Behind all others, in this group.
+    /// Moves objects to the end of the list, into this group.
     pub fn at_end(objects: &List<Object>, moved: &[usize], group: Option<String>) -> Option<Self> {
         let own: HashSet<&usize> = moved.iter().collect();
         let order = listed(objects);
@@ -32,12 +32,12 @@ impl Arrangement {
         })
     }
 
-    /// One step up or down for an object, among the members of its group or past what stands beside it, which may be a
-    /// group; or for all that are in a group. `None` where there is nothing.
+    /// Moves an object one step up or down: among the members of its group, or past the neighbouring object or group.
+    /// Several objects, all members of one group, move together. `None` if there is nothing to move past.
     pub fn step(objects: &List<Object>, moved: &[usize], is_down: bool) -> Option<Self> {
         let group = &objects.get(*moved.first()?)?.group;
         let members = objects.iter().filter(|object| object.group == *group);
-        // What is alone in its group goes as the group does.
+        // The only member of a group moves as the whole group does.
         let is_alone = moved.len() > 1 || members.take(2).count() < 2;
         let own = if is_alone { "" } else { group };
         let all: HashSet<&usize> = moved.iter().collect();
@@ -65,8 +65,8 @@ impl Arrangement {
     }
 }
 
-/// Lists objects in a group: behind its members, or where the first of them is if it is new; or by themselves, if its
-/// name is empty. Returns where they are.
+/// Puts objects into the group of this name: after its members or, if the group is new, where the first of the
+/// objects is. An empty name takes them out of their groups. Returns their items in the new order.
 pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
     let mut members = put_in_order(scene, members);
     if name.is_empty() {
@@ -101,7 +101,7 @@ pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
     places.into_iter().map(Item::object).collect()
 }
 
-/// Puts all objects into the order in which they are shown; returns where some of them are then.
+/// Sorts all objects into display order; returns the new indices of `some` of them.
 fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
     let order = listed(&scene.objects);
     if !order.is_sorted() {
@@ -113,7 +113,7 @@ fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
     places.map(|(index, _)| index).collect()
 }
 
-/// Puts objects elsewhere; returns where they are.
+/// Moves objects; returns their items in the new order.
 pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let moved: HashSet<usize> = arrangement.objects.into_iter().collect();
     let order = listed(&scene.objects);
@@ -127,7 +127,7 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let at = anchor + usize::from(arrangement.is_after);
     let places = at..at + moved.len();
     if is_kept_so {
-        // The rest of the list is shared with the one before, also in the history.
+        // Moved one by one, so that the rest of the list stays shared with earlier undo states.
         let taken = moved.iter().rev().map(|index| scene.objects.remove(*index));
         for object in taken.collect::<Vec<_>>() {
             scene.objects.insert(at, object);
@@ -149,7 +149,7 @@ fn reorder(scene: &mut Scene, order: &[usize]) {
     scene.objects = objects.collect();
 }
 
-/// The places of objects in the order in which they are shown.
+/// Indices of the objects in display order.
 fn listed(objects: &List<Object>) -> Vec<usize> {
     let mut firsts: HashMap<&str, usize> = HashMap::new();
     let keys = objects.iter().enumerate().map(|(index, object)| {
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::scene::Sphere;
 
-    /// Objects by their names, the group in front: `g:a` is in one.
+    /// Objects of these names, with an optional group in front: `g:a` is `a` in group `g`.
     fn scene(names: &[&str]) -> Scene {
         let mut scene = Scene::empty();
         let ball = Sphere {
@@ -221,7 +221,7 @@ mod tests {
         let moved = arrange(&mut scene, after(&[2, 0], 1, Some("g")));
         assert_eq!(names(&scene), ["g:b", "g:a", "g:c", "g:d"]);
         assert_eq!(moved, [1, 2].map(Item::object));
-        // All of a group, which stays one.
+        // One member moves past the others; the group stays.
         let moved = arrange(&mut scene, after(&[0], 3, None));
         assert_eq!(names(&scene), ["g:a", "g:c", "g:d", "g:b"]);
         assert_eq!(moved, [Item::object(3)]);
@@ -251,7 +251,7 @@ mod tests {
         );
         assert_eq!(step(&[0], true), "g:c g:a b d");
         assert_eq!(step(&[2], true), "g:c g:a d b");
-        // A group goes with all of it.
+        // A group moves with all its members.
         assert_eq!(step(&[0, 1], true), "d g:c g:a b");
         assert_eq!(step(&[1, 2], false), "g:c g:a d b");
         assert_eq!(step(&[0, 1], false), "g:c g:a d b", "it is the first");
@@ -285,12 +285,12 @@ mod tests {
         assert_eq!(names(&scene), ["g:a", "g:d", "c", "b"]);
         assert_eq!(group(&mut scene, &[3, 1], "h"), [1, 2].map(Item::object));
         assert_eq!(names(&scene), ["g:a", "h:d", "h:b", "c"]);
-        // Out of the middle of another group, behind that; and all there is.
+        // Members from the middle of another group go after that group; then all objects form one group.
         assert_eq!(group(&mut other, &[1, 3], "h"), [2, 3].map(Item::object));
         assert_eq!(names(&other), ["g:a", "g:c", "h:b", "h:d"]);
         assert_eq!(group(&mut other, &[0, 1, 2, 3], "i").len(), 4);
         assert_eq!(names(&other), ["i:a", "i:c", "i:b", "i:d"]);
-        // A file may have them anywhere.
+        // In a file, members of a group may be apart.
         scene.objects[3].group = "g".to_owned();
         assert_eq!(group(&mut scene, &[1], ""), [Item::object(2)]);
         assert_eq!(names(&scene), ["g:a", "g:c", "d", "h:b"]);

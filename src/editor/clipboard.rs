@@ -1,4 +1,4 @@
-//! What is copied and pasted: the text of a scene with nothing else in it.
+//! Copy and paste: the clipboard holds the text of a scene with nothing else in it.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
@@ -17,10 +17,10 @@ use crate::scene::{
     without_number,
 };
 
-/// How deep a row is, as a share of its length, whose copy stands before it.
+/// Least depth (z) of a row of objects, as a share of its length (x), for its copy to be placed in front of it.
 const THINNEST: f64 = 0.05;
 
-/// The selected things alone, with the packs that they wear and the keys of their values.
+/// Returns a scene of the selected things alone, with the color packs that they use and the tracks that animate them.
 pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
     let of = |kind| selected.places(kind).into_iter();
     let objects = of(ItemKind::Object).filter_map(|index| scene.objects.get(index).cloned());
@@ -43,7 +43,7 @@ pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
     part
 }
 
-/// What moves the things of a part in the scene that it is from.
+/// Returns the tracks of `scene` that animate things in `part`, an excerpt of it.
 fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
     let owners = Owners::of(
         part,
@@ -54,11 +54,12 @@ fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
     own.cloned().collect()
 }
 
-/// What a text means that is pasted into a scene: the text of a scene, or of objects, of lights, or of packs. Packs
-/// that objects wear are looked up in the scene.
+/// Parses a text pasted into a scene: the text of a scene, or of objects, lights or color packs. Color packs that
+/// objects use are looked up in the scene.
 ///
 /// # Errors
-/// [`SceneError::Refused`]: why it is neither; places are those of the whole that the text is part of.
+/// [`SceneError::Refused`]: why the text is none of these; positions refer to the complete scene text that the pasted
+/// text is wrapped in.
 pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     let text = text.trim().trim_end_matches(',');
     let body = &text[header(text).len()..];
@@ -70,7 +71,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
     }
     if !matches!(word, Some("Object" | "Light")) {
         let mut read = Document::from_text(text)?.scene;
-        // What a scene leaves out is that of the demo, which nobody has written here.
+        // Fields that a scene text omits default to those of the demo scene, which nobody has written here.
         if !names_field(text, "lights") {
             read.lights = List::new();
         }
@@ -95,14 +96,14 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
         "Scene(version: 1, color_packs: {{{packs}}}, objects: [\n{objects}\n], lights: [{lights}])"
     );
     let mut read = Document::from_text(&whole)?.scene;
-    // The scene has them as they are.
+    // The color packs as they are in the scene.
     read.color_packs = scene.color_packs.clone();
     Ok(excerpt(&read, &Selection::all(Item::everything(&read))))
 }
 
-/// Adds everything in `pasted`, objects behind those that they are copies of, and the rest behind what is there: for
-/// what wears packs, those that are there already are used; others get a name that is free. Returns the lights and
-/// objects that are new, or the packs where nothing else is pasted.
+/// Adds everything in `pasted`: objects after the ones that they are copies of, everything else at the end of its
+/// list. Color packs that the scene already has are reused for objects and lights; others are added under a free
+/// name. Returns the new lights and objects, or the new color packs if nothing else is pasted.
 pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     let (lights, objects) = (scene.lights.len(), scene.objects.len());
     let before = scene.color_packs.len();
@@ -117,7 +118,7 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
         }
     };
     let by = way_aside(scene, pasted);
-    // What they are called here.
+    // Names in this scene, by owner in the pasted one.
     let mut names = HashMap::new();
     let mut taken = Names::new(scene.objects.iter().map(|object| &*object.name));
     let groups = new_groups(scene, pasted);
@@ -162,8 +163,9 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     lights.chain(objects).collect()
 }
 
-/// Adds packs, unless they are there already and no copy is wanted: what each is called in the scene. One may be there
-/// under another number: with every paste there would be one more like it.
+/// Adds the pasted color packs that the scene does not have yet, or copies of all if `are_copies`; returns their
+/// names in the scene by their pasted names. An equal pack is also reused if only its number differs: else every
+/// paste would add another one.
 fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<String, String> {
     let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
     let mut names = IndexMap::new();
@@ -185,8 +187,9 @@ fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<
     names
 }
 
-/// Puts new objects at the end of the list behind those of the same names in what is pasted, or behind their group; not
-/// between the members of another one. `None` where there are none.
+/// Returns the arrangement that moves the `new` objects from the end of the list to behind their originals (the
+/// objects of the same names as the pasted ones) or behind their group, but not between the members of another group.
+/// `None` if the scene has neither.
 fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<Arrangement> {
     let names = pasted.objects.iter().map(|object| &*object.name);
     let names: HashSet<&str> = names.collect();
@@ -206,8 +209,9 @@ fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<
     })
 }
 
-/// What groups are called of which all is pasted once more, or that are others of the same name: each is a group of its
-/// own. Some members of a group stay in it, and one alone in any case: it may have been cut out there.
+/// Returns new names, by old name, for pasted groups that become groups of their own: a whole group pasted once more,
+/// or another group of the same name. A part of a group joins that group, and so does a single object in any case: it
+/// may have been cut from there.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
     let there = members(scene);
     let mut taken = Names::new(there.keys().copied());
@@ -224,7 +228,7 @@ fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
     new
 }
 
-/// The groups of a scene, and the names of what is in them.
+/// The groups of a scene, each with the names of its members.
 fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
     let mut members: IndexMap<&str, HashSet<&str>> = IndexMap::new();
     for object in scene
@@ -240,15 +244,15 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
     members
 }
 
-/// From where things were copied to where they do not stand in each other: two things in one place would
-/// shadow each other. All of them go the same way.
+/// Returns the offset from the originals to a free place: two things in one place would shadow each other. All pasted
+/// things are offset alike.
 fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
     let step = match (pasted.objects.first(), pasted.objects_bounds()) {
         (None, _) => {
             let first = pasted.lights.first();
             first.map_or(DVec3::ZERO, |light| step_of_light(scene, light))
         }
-        // What stands in a row has its copy before it, and not where the picture ends.
+        // The copy of a row goes in front of it: at its end it might be outside the picture.
         (_, Some((low, high))) => {
             let size = high - low;
             let is_row = pasted.objects.len() > 1 && size.x * THINNEST < size.z && size.z < size.x;
@@ -291,7 +295,7 @@ mod tests {
         );
         for group in ["Group 2", "Group 3"] {
             let copies = paste(&mut scene, &all);
-            // Behind what they are copies of, which is the first group.
+            // Behind their originals, which are the first group.
             assert_eq!(copies, [3, 4, 5].map(Item::object));
             assert_eq!(groups(&scene, 3)[..3], [group; 3]);
         }
@@ -301,10 +305,10 @@ mod tests {
             groups(&scene, 0)[..5],
             ["Group 1", "Group 1", "Group 1", "Group 1", "Group 3"]
         );
-        // Where that is gone, behind its group.
+        // If the original is gone, the copy goes behind its group.
         scene.objects.remove(1);
         assert_eq!(paste(&mut scene, &one), [Item::object(3)]);
-        // What comes from elsewhere and has the same name is another group.
+        // Objects of other names from a group of the same name are another group.
         let mut other = all.clone();
         for object in other.objects.iter_mut() {
             object.name.push_str(" elsewhere");
@@ -348,7 +352,7 @@ mod tests {
         assert_eq!(scene.objects[2].name, "Sphere 3");
         assert_ne!(scene.objects[2].shape, scene.objects[0].shape);
         assert_eq!(check(&scene), Ok(()));
-        // Elsewhere the packs come with it.
+        // In another scene, the color packs are added as well.
         let mut other = Scene::empty();
         paste(&mut other, &part);
         assert_eq!((other.objects.len(), check(&other)), (2, Ok(())));
@@ -395,11 +399,11 @@ mod tests {
         paste(&mut scene, &found);
         assert_eq!(check(&scene), Ok(()));
         assert_eq!(scene.animation.tracks.len(), 4 + 3);
-        // They are as far away as what they move.
+        // The keys are offset as far as what they move.
         for track in &scene.animation.tracks {
             assert_eq!(Some(track.keys[0].value), track.target.get(&scene));
         }
-        // A copy of one of them has them as well.
+        // A duplicate gets copies of the tracks, too.
         for item in [Item::object(0), Item::light(0)] {
             let copied = Edit::Duplicate(item).apply(&mut scene);
             assert!(copied.is_ok());

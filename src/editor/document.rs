@@ -1,4 +1,4 @@
-//! The open document: what changes it goes through [`Editor::apply`].
+//! The open document: all changes of it go through [`Editor::apply`].
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,27 +21,27 @@ use crate::scene::{
     Document, EXAMPLES, Example, MeshSource, Orientation, Scene, SceneError, check_edit,
 };
 
-/// The open document and everything about working on it.
+/// The open document and the state of editing it.
 #[derive(Debug)]
 pub struct Editor {
     pub(super) scene: Arc<Scene>,
     revision: u64,
     pub(super) header: String,
     pub(super) path: Option<PathBuf>,
-    /// What the document is called while it has no file.
+    /// The name of the document while it has no file.
     name: &'static str,
     pub(super) saved: Arc<Scene>,
-    /// What its file held when this window read or wrote it last.
+    /// Content of the file when this window last read or wrote it.
     pub(super) stamp: Option<Stamp>,
     documents: u64,
-    /// The state that the last message about a step was told in.
+    /// Revision at which the last message about a step was shown.
     pub(super) told_of: u64,
     pub(super) is_dirty: bool,
-    /// How its file is, as far as is known.
+    /// State of the document's file, as last observed.
     pub(super) own_file: OwnFile,
-    /// Mesh files that other programs have written since the document was opened, as they are now.
+    /// Current contents of mesh files that other programs have written since the document was opened.
     pub(super) reread: Vec<MeshSource>,
-    /// Mesh files that were read, and hold something else now that cannot be.
+    /// Mesh files that were read before, but can no longer be read since another program wrote them.
     pub(super) broken: BTreeSet<PathBuf>,
     pub(super) history: History,
     flight: Flight,
@@ -49,7 +49,7 @@ pub struct Editor {
     pub(super) selection: Selection,
     /// What the picture area shows.
     pub mode: Mode,
-    /// What the user should read, oldest first; the window takes them away.
+    /// Messages for the user, oldest first; the window removes them when it shows them.
     pub messages: Vec<Message>,
     /// Whether the last edit was refused.
     pub(super) is_refused: bool,
@@ -91,18 +91,17 @@ impl Editor {
         }
     }
 
-    /// The scene as it is now.
+    /// The current scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// The scene as it is on show: at the time of the playhead, through the camera that is looked
-    /// through.
+    /// The scene as shown: at the time of the playhead, through the camera in use.
     pub fn shown(&self) -> &Arc<Scene> {
         &self.animation_state.shown
     }
 
-    /// Grows with every change of what is on show.
+    /// Revision of the shown scene; grows with every change.
     pub fn shown_revision(&self) -> u64 {
         self.animation_state.revision
     }
@@ -117,7 +116,7 @@ impl Editor {
         &self.animation_state.path
     }
 
-    /// The time that is on show, in seconds.
+    /// The time that is shown, in seconds.
     pub fn shown_time(&self) -> f64 {
         self.timeline().shown_time(&self.scene.animation)
     }
@@ -127,7 +126,7 @@ impl Editor {
         self.timeline().looks_through(&self.scene.animation)
     }
 
-    /// Grows with every change of the scene.
+    /// Revision of the scene; grows with every change.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -137,12 +136,12 @@ impl Editor {
         self.path.as_deref()
     }
 
-    /// Whether there are changes that no file has.
+    /// Whether there are changes that are not in any file.
     pub fn is_dirty(&self) -> bool {
         self.is_dirty || self.has_lost_files() || self.is_making_keys()
     }
 
-    /// What the document is called: its file name, that of its example, or `untitled`.
+    /// The title of the document: its file name, the name of its example, or `untitled`.
     pub fn title(&self) -> String {
         let Some(path) = &self.path else {
             return self.name.to_owned();
@@ -151,7 +150,7 @@ impl Editor {
         name.to_string_lossy().into_owned()
     }
 
-    /// The same without the ending.
+    /// The title without the extension `.ron`.
     pub fn stem(&self) -> String {
         let title = self.title();
         title.strip_suffix(".ron").unwrap_or(&title).to_owned()
@@ -162,7 +161,7 @@ impl Editor {
         self.history.undo_label()
     }
 
-    /// The name of the step that redo would bring again.
+    /// The name of the step that redo would repeat.
     pub fn redo_label(&self) -> Option<&str> {
         self.history.redo_label()
     }
@@ -172,7 +171,8 @@ impl Editor {
         &self.selection
     }
 
-    /// The middle of what is selected, or of everything; 0 where nothing is.
+    /// The middle of the selection, or of the whole scene if nothing with a position is selected; the origin if
+    /// neither has one.
     pub fn middle(&self) -> DVec3 {
         let scene = self.shown();
         let selected = self.selection.middle(scene);
@@ -196,14 +196,14 @@ impl Editor {
         self.flight.orientation(&self.shown().camera)
     }
 
-    /// Does what was asked for. Whether the scene is another one since: it may be refused, with a reason of its own.
+    /// Carries out an action; returns whether it changed the scene. If it was refused, the reason has been reported.
     pub fn changes(&mut self, action: Action) -> bool {
         let before = self.revision;
         self.apply(action);
         self.revision != before
     }
 
-    /// Does what a panel asked for.
+    /// Carries out an action requested by a panel.
     pub fn apply(&mut self, action: Action) {
         match action {
             Action::Edit(edit) => drop(self.edit(edit)),
@@ -232,7 +232,7 @@ impl Editor {
             Action::Redo => self.travel(History::redo),
             Action::Show(mode) => {
                 if mode == Mode::HighRes {
-                    // A picture of what moves would never be done.
+                    // A still picture of a moving scene would never be finished.
                     self.apply_time(Time::Play(false));
                 }
                 self.mode = mode;
@@ -243,12 +243,13 @@ impl Editor {
         self.animation_state.update(&self.scene);
     }
 
-    /// Ends the gesture: the next edit is a step of its own in the history. What ends as it began is none.
+    /// Ends the gesture: the next edit is a new undo step. A gesture that ends in the scene it began with leaves no
+    /// step.
     pub fn end_gesture(&mut self) {
         self.history.end_gesture(&self.scene);
     }
 
-    /// Whether edits of the same kind are one step.
+    /// Whether a gesture is going on, in which edits of the same name are one step.
     pub fn is_in_gesture(&self) -> bool {
         self.history.is_in_gesture()
     }
@@ -266,13 +267,13 @@ impl Editor {
         });
     }
 
-    /// Takes what was read of a file in place of the document.
+    /// Replaces the document with one that was read from a file.
     pub fn open(&mut self, (document, stamp): (Document, Stamp), path: &Path) {
         self.replace(document, Some(absolute(path)));
         self.stamp = Some(stamp);
     }
 
-    /// Grows when another document takes the place of the one that was open.
+    /// Number of times that another document was opened in place of the current one.
     pub fn documents(&self) -> u64 {
         self.documents
     }
@@ -280,13 +281,13 @@ impl Editor {
     /// Writes the document to `path`, which becomes its file.
     ///
     /// # Errors
-    /// Why it could not be written; the document then still counts as changed.
+    /// The reason why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
         let path = &absolute(path);
         let document = self.document().at(path);
         let lost = self.lost_meshes(&document.scene);
         let (backup, stamp) = document.save_stamped(path)?;
-        // What is in the scene file now follows no other file.
+        // Meshes that are stored in the scene file from now on no longer follow files of their own.
         if document.scene != *self.scene {
             self.set_scene(Arc::new(document.scene));
         }
@@ -304,7 +305,7 @@ impl Editor {
         Ok(())
     }
 
-    /// What the document's file held when it was read or written.
+    /// Content of the document's file when it was last read or written.
     pub fn stamp(&self) -> Option<&Stamp> {
         self.stamp.as_ref()
     }
@@ -312,7 +313,7 @@ impl Editor {
     /// The text of the document as it would be saved.
     ///
     /// # Errors
-    /// [`SceneError::Unwritable`], for a scene that has no text.
+    /// [`SceneError::Unwritable`], for a scene that cannot be serialized.
     pub fn to_text(&self) -> Result<String, SceneError> {
         self.document().to_text()
     }
@@ -325,8 +326,8 @@ impl Editor {
         }
     }
 
-    /// The document as it can be kept anywhere: a mesh that lies in no folder of this scene, where it would
-    /// not be found again, is taken in.
+    /// The document as it can be stored in any folder: meshes outside the scene's folder, which would not be found
+    /// from there, are stored in it.
     pub fn document_to_keep(&self) -> Document {
         let folder = self.path().and_then(Path::parent);
         let Document { header, scene } = self.document();
@@ -338,7 +339,7 @@ impl Editor {
         self.become_other(Self::new(document, path));
     }
 
-    /// Takes another document's place; what is traced and what is said goes on.
+    /// Replaces the document with another one; revisions go on and messages stay.
     fn become_other(&mut self, other: Self) {
         let revision = self.revision + 1;
         let documents = self.documents + 1;
@@ -354,11 +355,11 @@ impl Editor {
         self.tell_missing_meshes();
     }
 
-    /// Makes a change. Whether it was; what changes nothing was, too.
+    /// Makes an edit; returns false if it was refused. An edit that changes nothing counts as made.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let (label, before) = (edit.label(&self.scene), self.here());
         let is_camera = edit.moves_view();
-        // What moves the joined things is taken along by it.
+        // Joining or splitting moves the tracks of the objects along, so no keys are set for them.
         let joined = edit.joined().to_vec();
         let replaced = edit.replaced();
         let is_less = !joined.is_empty() || matches!(edit, Edit::Delete(_));
@@ -420,17 +421,17 @@ impl Editor {
         self.set_scene(self.refreshed(&there.scene));
     }
 
-    /// What is selected stays so, wherever it is in the lists of the scene that comes.
+    /// The selection, with its items at their indices in the next scene.
     pub(super) fn followed(&self, next: &Scene) -> Selection {
         let followed = self.selection.followed(&self.scene, next);
         match (self.selection.items(), followed.items()) {
-            // Where the only one is gone, what is in its place is next.
+            // If the only selected item is gone, the item that follows it at its index is selected.
             ([_], []) => self.selection.clone(),
             _ => followed,
         }
     }
 
-    /// Selects what is there of it.
+    /// Selects those of the items that the scene has.
     fn select(&mut self, selection: Selection) {
         self.selection = selection.within(&self.scene);
         self.history.note_selected(&self.selection);

@@ -17,79 +17,78 @@ use super::arrange::{Arrangement, arrange, group};
 use super::clipboard::paste;
 use super::item::{Item, ItemKind};
 
-/// A change of the scene. The `&'static str` names the field that changed: edits of one field
-/// during one gesture are one step in the history.
+/// A change of the scene. The `&'static str` names the field that changed: edits of one field during one gesture are
+/// one step in the undo history.
 #[derive(Clone, Debug)]
 pub enum Edit {
-    /// Another camera.
+    /// Replaces the camera.
     Camera(Camera, &'static str),
-    /// Another background colour, 0–255.
+    /// Sets the background colour, 0–255.
     Background(DVec3),
-    /// Another ambient intensity, 0–1.
+    /// Sets the ambient intensity, 0–1.
     Ambient(f64),
-    /// Whether the markers of lights are seen.
+    /// Sets whether the markers of lights are visible.
     LightVisualization(bool),
-    /// Other settings of the still picture.
+    /// Replaces the settings of the still picture.
     Render(Render, &'static str),
-    /// Other keys; the name is what was done to them.
+    /// Replaces the animation; the name says what was done to its keys.
     Animation(Arc<Animation>, &'static str),
-    /// Another object in this place.
+    /// Replaces the object at this index.
     Object(usize, Box<Object>, &'static str),
-    /// Another light in this place.
+    /// Replaces the light at this index.
     Light(usize, Light, &'static str),
-    /// Another pack under the name in this place.
+    /// Replaces the color pack at this index, which keeps its name.
     Pack(usize, ColorPack, &'static str),
-    /// A new object of this name, or one like it, and this shape.
+    /// Adds an object of this name, with a number, and this shape.
     AddObject(&'static str, Shape),
-    /// The parts of a mesh file as new objects.
+    /// Adds the parts of a mesh file as objects.
     Import(Vec<Part>),
-    /// One mesh of these triangles and meshes, in ascending order.
+    /// Joins the triangles and meshes at these indices, in ascending order, into one mesh.
     Join(Vec<usize>),
-    /// Everything in this scene as well; packs that are there already are used. The word is what the step is
-    /// called.
+    /// Adds everything in this scene; equal color packs are reused. The string is the name of the step.
     Paste(Box<Scene>, &'static str),
-    /// Triangles of this mesh.
+    /// Splits the mesh at this index into triangles.
     Separate(usize),
-    /// A new light here.
+    /// Adds a light at this position.
     AddLight(DVec3),
-    /// A new pack.
+    /// Adds a color pack.
     AddPack,
-    /// Another name; whatever refers to a pack follows it.
+    /// Renames an item; references to it are updated.
     Rename(Item, String),
-    /// A copy behind the original in its list, and beside it in the scene.
+    /// Inserts a copy after the original in its list, and beside it in the scene.
     Duplicate(Item),
-    /// Away with these; a pack that is in use stays.
+    /// Deletes these items; refused if a color pack among them stays in use.
     Delete(Vec<Item>),
-    /// These, of one kind, to another place in their list, counted without them.
+    /// Moves these items, of one kind, to an index in their list, counted without them.
     Move(Vec<Item>, usize),
-    /// Objects elsewhere in their list, and into another group.
+    /// Moves objects within their list, and into another group.
     Arrange(Arrangement),
-    /// A copy of its pack for this object alone.
+    /// Gives this object its own copy of its color pack.
     MakePackUnique(usize),
-    /// Each pack that is equal to one before it goes, and that one is worn in its place.
+    /// Removes each color pack that equals an earlier one, which replaces it everywhere.
     MergePacks,
-    /// The objects in these places are listed in the group of this name; in none, if it is empty.
+    /// Puts the objects at these indices into the group of this name; an empty name takes them out of their groups.
     Group(Vec<usize>, String),
-    /// Another name for a group, which no other has.
+    /// Renames a group, from the first name to the second, which no other group has.
     RenameGroup(String, String),
-    /// Other bookmarks; the name is what was done to them.
+    /// Replaces the bookmarks; the name says what was done to them.
     Bookmarks(Vec<Bookmark>, &'static str),
-    /// All of these, one after the other, in one step of this name.
+    /// Applies all of these in turn, as one step of this name.
     Each(Vec<Edit>, String),
 }
 
-/// Why a change is refused.
+/// The reason why a change is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// Something wears the pack that was to go.
+    /// The color pack to be deleted is in use.
     #[error("“{name}” is used by {users}; give them another color pack first")]
     PackInUse {
         /// The pack's name.
         name: String,
-        /// The first few names of what wears it, and how many more there are.
+        /// The first few names of what uses it, and how many more there are.
         users: String,
     },
-    /// Two packs would have one name.
+    /// Two color packs would have the same name.
     #[error("There is another color pack named “{0}”; choose another name")]
     PackNameTaken(String),
     /// Two groups would become one.
@@ -97,8 +96,8 @@ pub enum EditError {
     GroupNameTaken(String),
 }
 
-/// What an edit puts in place of what is on show, wherever its keys have brought that: objects and lights by their
-/// places, and the ambient intensity.
+/// What an edit overwrites, regardless of the value that the keys show at the time: indices of objects and of lights,
+/// and the ambient intensity.
 #[derive(Debug, Default)]
 pub struct Replaced {
     objects: HashSet<usize>,
@@ -117,7 +116,7 @@ impl Replaced {
         }
     }
 
-    /// Whether a target that belongs to the light or object in this place is among it.
+    /// Returns whether a target is overwritten that belongs to the light or object at index `place`.
     pub fn holds(&self, target: &Target, place: Option<usize>) -> bool {
         let owners = match target {
             Target::AmbientIntensity => return self.ambient,
@@ -129,22 +128,22 @@ impl Replaced {
 }
 
 impl Edit {
-    /// Other keys; `what` is what was done to them.
+    /// Replaces the animation; `what` says what was done to its keys.
     pub fn animation(animation: Animation, what: &'static str) -> Self {
         Self::Animation(Arc::new(animation), what)
     }
 
-    /// An animation without these of its keys.
+    /// Deletes these keys of an animation.
     pub fn delete_keys(animation: &Animation, keys: &Keys) -> Self {
         Self::animation(animation.without_keys(keys), "Delete keys")
     }
 
-    /// Another object in this place; `field` is what changed.
+    /// Replaces the object at this index; `field` names what changed.
     pub fn object(index: usize, object: Object, field: &'static str) -> Self {
         Self::Object(index, Box::new(object), field)
     }
 
-    /// The objects that are joined, or taken apart: they stay where they are on show.
+    /// Indices of the objects that are joined or split, which keep the shape and place that is shown.
     pub fn joined(&self) -> &[usize] {
         match self {
             Self::Join(joined) => joined,
@@ -153,7 +152,7 @@ impl Edit {
         }
     }
 
-    /// Whether it is about where the view is seen from.
+    /// Whether the edit moves the camera of the view.
     pub fn moves_view(&self) -> bool {
         match self {
             Self::Camera(..) => true,
@@ -162,14 +161,14 @@ impl Edit {
         }
     }
 
-    /// What it puts in place of what is on show.
+    /// Returns what the edit overwrites, regardless of keys.
     pub fn replaced(&self) -> Replaced {
         let mut replaced = Replaced::default();
         replaced.add(self);
         replaced
     }
 
-    /// Shows or hides an item of what is on show, if it can be hidden.
+    /// Shows or hides an item of `scene`, the scene as shown; `None` if it cannot be hidden.
     pub fn visible(scene: &Scene, item: Item, visible: bool) -> Option<Self> {
         let field = if visible { "show" } else { "hide" };
         let to_object = |object: &mut Object| object.visible = visible;
@@ -177,7 +176,7 @@ impl Edit {
         Self::of_item(scene, item, field, (to_object, to_light))
     }
 
-    /// The change of an item that does this to an object, and this to a light; `None` for packs.
+    /// Changes an object by `to_object`, or a light by `to_light`; `None` for color packs.
     pub fn of_item(
         scene: &Scene,
         Item { kind, index }: Item,
@@ -199,7 +198,7 @@ impl Edit {
         }
     }
 
-    /// What the step is called in the history.
+    /// The name of the step in the undo history.
     pub fn label(&self, scene: &Scene) -> String {
         let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();
         match self {
@@ -246,11 +245,10 @@ impl Edit {
         }
     }
 
-    /// Changes the scene; returns the items that shall be selected; none leaves that as it is.
+    /// Changes the scene; returns the items to be selected, or none to keep the selection.
     ///
     /// # Errors
-    /// [`EditError`]: why the change is refused; the scene is then half-changed and to be
-    /// thrown away.
+    /// [`EditError`]: why the change is refused; the scene is then half-changed and must be discarded.
     pub fn apply(self, scene: &mut Scene) -> Result<Vec<Item>, EditError> {
         match self {
             Self::Camera(camera, _) => scene.camera = camera,
@@ -303,9 +301,9 @@ fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
     }
 }
 
-/// Packs go last: what wears them may go with them.
+/// Deletes items; color packs last, as their users may be among the items.
 fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
-    // From the last on: what is deleted does not move those before it.
+    // In descending order, so that deleting one does not shift the indices of the rest.
     items.sort_unstable_by(|a, b| b.cmp(a));
     items.dedup();
     let (mut objects, mut lights) = (Vec::new(), Vec::new());
@@ -394,7 +392,7 @@ fn rename_group(scene: &mut Scene, from: &str, to: &str) -> Result<(), EditError
     Ok(())
 }
 
-/// Returns where they are then, in the order in which they were given.
+/// Moves items of one kind to index `to`; returns their new items, in the given order.
 fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     let Some(kind) = items.first().map(|item| item.kind) else {
         return items;
@@ -427,7 +425,7 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     items.iter().filter(is_there).filter_map(now).collect()
 }
 
-/// Takes out what is in these places, and puts it in before the one that is `to` then.
+/// Takes out the items at these indices and inserts them again before the one that is at index `to` by then.
 fn move_within<T: Clone>(list: &mut List<T>, places: &BTreeSet<usize>, to: usize) {
     let taken = places.iter().rev().map(|place| list.remove(*place));
     for item in taken.collect::<Vec<_>>() {

@@ -1,4 +1,4 @@
-//! What the timeline's actions do to the document: playing, recording, keys made of a recording.
+//! Effects of timeline actions on the document: playback, recording, making keys of a recording.
 
 use std::sync::Arc;
 
@@ -11,11 +11,12 @@ use crate::animate::{Landmark, Worst, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
 use crate::words::counted;
 
-/// Keys that a recording becomes, at first, and for each second: about as many as a hand can edit.
+/// Most keys that a recording should become: a base number, and more per second. About as many as can be edited by
+/// hand.
 const FEW: (f64, f64) = (8.0, 2.5);
-/// Where the search for a tolerance ends, in pixels: farther off, one would see it.
+/// Largest tolerance that is tried, in pixels: a larger deviation would be visible.
 const COARSEST: f64 = 6.0;
-/// If one of so many samples was in a step, it is told.
+/// The user is told of steps of the mouse if more than one in this many samples was interpolated.
 const MOSTLY: usize = 5;
 
 impl Editor {
@@ -26,14 +27,14 @@ impl Editor {
         let timeline = &mut self.animation_state.timeline;
         match time {
             Time::Seek(seconds) => {
-                // Behind the end, too: there the next key goes.
+                // Beyond the end is allowed, too: the next key may go there.
                 timeline.seek(animation, seconds.clamp(0.0, MAX_SECONDS));
                 self.show_time();
             }
             Time::Stretched(from, by) => timeline.stretch(from, by),
             Time::Step(frames) => {
                 let frame = animation.frame_at(timeline.playhead);
-                // From behind the end it goes on from there.
+                // A playhead beyond the end stays there.
                 let last = animation.frame_count().max(frame);
                 let frame = frame.saturating_add_signed(frames).clamp(1, last);
                 timeline.is_playing = false;
@@ -89,48 +90,46 @@ impl Editor {
         }
     }
 
-    /// A still picture is of another time.
+    /// Returns from the still picture, which is out of date, to the live view.
     pub(super) fn leave_still(&mut self) {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
     }
 
-    /// What moves is looked at as it moves: through the shot camera, unless the user has chosen to
-    /// stay outside.
+    /// Looks through the shot camera to show the animation, unless the user has chosen to stay outside.
     fn show_time(&mut self) {
         let timeline = &mut self.animation_state.timeline;
-        // Where the shot stands still, a view that was flown to is left for the next key.
+        // Outside the time of the shot camera's flight, a view that was flown to is kept: it may become the next key.
         let is_kept = timeline.is_flown && !timeline.is_in_flight(&self.scene.animation);
-        // What is recorded is where the camera is flown, and not where it was.
+        // While recording, the camera is flown by hand, not by its existing keys.
         let is_free = timeline.stays_outside || timeline.recording.is_some() || is_kept;
         timeline.wants_shot = !is_free;
         timeline.is_flown &= is_free;
         self.leave_still();
     }
 
-    /// The take whose survey is waited for: someone is to trace it, and to answer with
-    /// [`Time::Surveyed`].
+    /// The take whose survey is awaited: the caller is to trace it and to answer with [`Time::Surveyed`].
     pub fn wanted_survey(&self) -> Option<&Arc<Take>> {
         self.animation_state.pending.as_ref().map(Pending::take)
     }
 
-    /// Whether the scene changes from frame to frame of the window.
+    /// Whether the scene may change with every frame of the window.
     pub fn is_moving(&self) -> bool {
         self.is_in_gesture() || self.timeline().is_playing
     }
 
-    /// Whether a flight is being recorded, or about to become keys.
+    /// Whether a flight is being recorded, or waits to become keys.
     pub fn is_recording(&self) -> bool {
         self.timeline().recorded().is_some() || self.is_making_keys()
     }
 
-    /// Whether a recorded flight is about to become keys.
+    /// Whether a recorded flight waits to become keys.
     pub fn is_making_keys(&self) -> bool {
         matches!(self.animation_state.pending, Some(Pending::Keep(_)))
     }
 
-    /// Does what waits, at once if what the take saw is known.
+    /// Finishes pending work, at once if the survey of its take has arrived.
     fn after_survey(&mut self, pending: Pending) {
         if self.animation_state.seen_by(pending.take()).is_some() {
             self.finish_pending(pending);
@@ -155,7 +154,7 @@ impl Editor {
             Pending::Keep(take) => self.keep(take),
             Pending::Simplify(take, pixels) => {
                 let animation = &self.scene.animation;
-                // An edit on the way may have replaced the take.
+                // An edit in the meantime may have replaced the take.
                 if !animation
                     .take
                     .as_ref()
@@ -178,7 +177,7 @@ impl Editor {
         }
     }
 
-    /// A recorded flight is kept, and made into keys as soon as it is known what it saw.
+    /// Keeps a recorded flight, and makes keys of it once its survey has arrived.
     fn stop_recording(&mut self, take: &Take) {
         if take.samples.len() < 2 {
             return self.notify("Nothing was recorded".to_owned());
@@ -199,14 +198,14 @@ impl Editor {
         self.after_survey(Pending::Keep(Arc::new(take)));
     }
 
-    /// Keeps a recorded flight, and makes its keys.
+    /// Stores a recorded flight in the scene, with keys made of it.
     fn keep(&mut self, take: Arc<Take>) {
         let count = take.samples.len();
         let seconds = take.samples.last().map_or(0.0, |last| last.0);
         let few = (FEW.0 + FEW.1 * seconds) as usize;
         self.animation_state.timeline.tolerance = 1.0;
         let mut keys = self.simplified(&take);
-        // A trembling hand would leave a key in every frame.
+        // A coarser tolerance if needed: a trembling hand would leave a key in every frame.
         while keys.len() > few && self.animation_state.timeline.tolerance < COARSEST {
             let coarser = self.animation_state.timeline.tolerance * 1.5;
             self.animation_state.timeline.tolerance = coarser.min(COARSEST);
@@ -244,7 +243,7 @@ impl Editor {
         ));
     }
 
-    /// Keys in place of a take whose survey is known.
+    /// Returns keys that replace a take, whose survey must be known.
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
         let state = &mut self.animation_state;
         let seen = state.seen_by(take).unwrap_or_default();
@@ -259,13 +258,14 @@ impl Editor {
     }
 }
 
-/// New keys for a flight that may have been given another length.
+/// Fits new keys into the time span `flown` of a flight, whose length may have been changed.
 fn in_the_time_of(flown: Option<(f64, f64)>, new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
     let (Some((first, last)), [start, .., end]) = (flown, &new[..]) else {
         return new;
     };
     let scale = (last - first) / (end.time - start.time);
-    // Where the beginning was taken away, what is left may have been moved to the start: it is there again, later.
+    // If the beginning was deleted and the rest moved to the start of the timeline, `first` is negative; the new keys
+    // have the beginning again and start at 0.
     let (from, first) = (start.time, first.max(0.0));
     let at = |time: f64| first + (time - from) * scale;
     let keys = new.into_iter();

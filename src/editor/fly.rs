@@ -1,10 +1,10 @@
-//! Flying: the camera's angles, kept in double precision, and its vectors rebuilt from them.
+//! Flying: keeps the camera's angles in double precision, and derives its vectors from them.
 
 use glam::DVec3;
 
 use crate::scene::{Camera, MAX_COORDINATE, Orientation, Projection};
 
-/// How far an orthographic picture is enlarged at most: to a window so high, in world units.
+/// Least height of an orthographic picture, in world units: the limit of zooming in.
 const LEAST_HEIGHT: f64 = 1e-6;
 
 /// A step of a flight: distances in world units, turns in radians.
@@ -20,13 +20,13 @@ pub struct Motion {
     pub yaw: f64,
     /// Tilt upwards.
     pub pitch: f64,
-    /// How much smaller the window of an orthographic picture becomes, as the logarithm of a factor: there, what is
-    /// nearer is no larger.
+    /// Zoom of an orthographic picture, as the natural logarithm of the factor by which its height shrinks: moving
+    /// closer would not enlarge it.
     pub zoom: f64,
 }
 
 impl Motion {
-    /// Both motions at once.
+    /// The sum of two motions.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Motion {
         }
     }
 
-    /// The motion with its distances scaled, and its turns and its zoom.
+    /// The motion with its distances scaled by `distance`, and its turns and zoom by `turn`.
     #[must_use]
     pub fn times(&self, distance: f64, turn: f64) -> Self {
         Self {
@@ -53,8 +53,7 @@ impl Motion {
     }
 }
 
-/// The angles of the camera as last written, so that a long flight never derives them from rounded
-/// vectors again.
+/// The angles of the camera as last computed, so that a long flight never derives them from rounded vectors again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flight {
     last: Option<(Orientation, DVec3, DVec3)>,
@@ -68,7 +67,7 @@ impl Flight {
         }
     }
 
-    /// The camera after a step: turned, then moved in its new directions.
+    /// The camera after a step: first turned, then moved along its new axes.
     pub fn step(&mut self, camera: &Camera, motion: &Motion) -> Camera {
         let mut next = camera.clone();
         if motion.yaw != 0.0 || motion.pitch != 0.0 {
@@ -90,8 +89,8 @@ impl Flight {
         next
     }
 
-    /// The camera on its way around a point, which stays where it is in the picture: turned to the right and
-    /// upwards by so many radians.
+    /// The camera after orbiting a point, which stays in its place in the picture; yaw to the right and pitch
+    /// upwards, in radians.
     pub fn orbit(&mut self, camera: &Camera, about: DVec3, (yaw, pitch): (f64, f64)) -> Camera {
         let turn = Motion {
             yaw,

@@ -1,4 +1,4 @@
-//! Undo and redo: whole scenes, which share what did not change.
+//! Undo and redo: each state is a whole scene, which shares unchanged parts with the others.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -7,48 +7,49 @@ use super::selection::Selection;
 use super::timeline::ViewState;
 use crate::scene::Scene;
 
-/// Steps that can be taken back; older ones are forgotten.
+/// Most steps that can be undone; older ones are dropped.
 const MOST_STEPS: usize = 500;
-/// Memory that steps may keep for themselves, in bytes; older ones are forgotten, but for the last.
+/// Most memory, in bytes, that undo steps may take beyond what they share; older ones are dropped, except for the
+/// last step.
 const MOST_BYTES: usize = 128 << 20;
 
-/// A state to return to.
+/// A state that undo or redo can return to.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// The scene.
     pub scene: Arc<Scene>,
     /// What was selected.
     pub selection: Selection,
-    /// What was looked at.
+    /// What was looked at, and at which time.
     pub look: ViewState,
 }
 
-/// A step that was done, or taken back.
+/// A step that was done or undone.
 #[derive(Clone, Debug)]
 struct Step {
     label: String,
-    /// The state on the other side of it.
+    /// The state on the other side of the step: before it if it was done, after it if it was undone.
     there: Snapshot,
-    /// What was selected when it was done, if that was noted.
+    /// What was selected after the step, if that was noted.
     selected: Option<Selection>,
-    /// What the two states do not share.
+    /// Bytes that the two states do not share.
     bytes: usize,
 }
 
-/// The steps before and after the present, each with the name of what was done.
+/// The undo and redo steps, each with its name.
 #[derive(Debug, Default)]
 pub struct History {
     done: VecDeque<Step>,
     undone: Vec<Step>,
-    /// Those that were undone before the gesture that goes on: it may come to nothing.
+    /// The redo steps from before the current gesture, to be restored if that changes nothing.
     aside: Vec<Step>,
-    /// The name of the step that edits are still joined to.
+    /// Name of the step that further edits of the current gesture are merged into.
     gesture: Option<String>,
 }
 
 impl History {
-    /// Notes that `before` was left for `after` by doing `label`. During a gesture, edits of the same
-    /// name are one step. What was undone can be done again after a look from elsewhere.
+    /// Notes that the step `label` led from `before` to `after`. During a gesture, edits of the same name are merged
+    /// into one step. Redo stays possible after a mere move of the camera.
     pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
         let is_going_on = self.gesture.as_ref() == Some(&label);
         if !is_going_on {
@@ -73,8 +74,8 @@ impl History {
         }
     }
 
-    /// Keeps what can be done again after a change: nothing, if it is one of more than the view. What was done where the
-    /// camera was before is seen from where it is now.
+    /// Keeps the redo steps if a change was only one of the camera, and drops them otherwise. The next redo states,
+    /// as far as they have the camera of before the change, get the new camera.
     fn keep_undone(&mut self, before: &Scene, after: &Scene) {
         let looking = |scene: &Scene| Scene {
             camera: after.camera.clone(),
@@ -89,19 +90,20 @@ impl History {
         }
     }
 
-    /// Notes what the step that goes on has selected: doing it again selects that.
+    /// Notes the selection of the current step, which redo restores.
     pub fn note_selected(&mut self, selection: &Selection) {
         if let Some(step) = self.done.back_mut().filter(|_| self.gesture.is_some()) {
             step.selected = Some(selection.clone());
         }
     }
 
-    /// Whether a gesture goes on.
+    /// Whether a gesture is going on.
     pub fn is_in_gesture(&self) -> bool {
         self.gesture.is_some()
     }
 
-    /// The next edit is a step of its own. A gesture that ends `here`, where it began, was none.
+    /// Ends the gesture: the next edit is a new step. A gesture that ends `here`, in the scene it began with, leaves
+    /// no step.
     pub fn end_gesture(&mut self, here: &Scene) {
         let aside = std::mem::take(&mut self.aside);
         let was_any = self.gesture.take().is_some();
@@ -116,24 +118,24 @@ impl History {
         }
     }
 
-    /// The state before the gesture that goes on, which is forgotten; `None` if nothing was done in it.
+    /// Drops the current gesture and returns the state before it; `None` if nothing was done in it.
     pub fn cancel_gesture(&mut self) -> Option<Snapshot> {
         self.gesture.take()?;
         self.undone = std::mem::take(&mut self.aside);
         self.done.pop_back().map(|step| step.there)
     }
 
-    /// The name of the last step.
+    /// The name of the step that undo would take back.
     pub fn undo_label(&self) -> Option<&str> {
         self.done.back().map(|step| step.label.as_str())
     }
 
-    /// The name of the step that was taken back last.
+    /// The name of the step that redo would repeat.
     pub fn redo_label(&self) -> Option<&str> {
         self.undone.last().map(|step| step.label.as_str())
     }
 
-    /// Takes the last step back from `here`.
+    /// Undoes the last step, with `here` as the current state; returns the state before that step.
     pub fn undo(&mut self, here: Snapshot) -> Option<Snapshot> {
         self.gesture = None;
         let step = self.done.pop_back()?;
@@ -146,7 +148,7 @@ impl History {
         Some(step.there)
     }
 
-    /// Does the step again that was taken back last.
+    /// Repeats the step that was undone last, with `here` as the current state; returns the state after that step.
     pub fn redo(&mut self, here: Snapshot) -> Option<Snapshot> {
         self.gesture = None;
         let step = self.undone.pop()?;
@@ -173,7 +175,7 @@ mod tests {
         }
     }
 
-    /// As many objects as a file can hold, or so.
+    /// A scene of 100 000 objects, about as many as a file can hold.
     fn large() -> Scene {
         let mut scene = Scene::empty();
         let shape = Shape::examples(DVec3::ZERO, 1.0).remove(0);
@@ -238,7 +240,7 @@ mod tests {
         for here in [with(0.1, 7.0), with(0.1, x)] {
             assert!(history.undo(snapshot(&here)).is_some());
         }
-        // What is given up takes nothing away.
+        // A cancelled gesture drops no redo steps.
         history.record("Lighter".to_owned(), snapshot(&scene), &with(0.5, 1.0));
         history.cancel_gesture();
         // A drag of the camera, in two parts.

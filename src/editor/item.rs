@@ -14,7 +14,7 @@ pub enum ItemKind {
 }
 
 impl ItemKind {
-    /// How many of them the scene has.
+    /// The number of items of this kind in the scene.
     pub fn count(self, scene: &Scene) -> usize {
         match self {
             Self::Light => scene.lights.len(),
@@ -24,17 +24,17 @@ impl ItemKind {
     }
 }
 
-/// One entry of a list of the scene, by its place.
+/// One entry of a list of the scene, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item {
-    /// Which list.
+    /// The list.
     pub kind: ItemKind,
-    /// Place in the list, from 0.
+    /// Index in the list.
     pub index: usize,
 }
 
 impl Item {
-    /// The object in this place.
+    /// The object at this index.
     pub const fn object(index: usize) -> Self {
         Self {
             kind: ItemKind::Object,
@@ -42,7 +42,7 @@ impl Item {
         }
     }
 
-    /// The light in this place.
+    /// The light at this index.
     pub const fn light(index: usize) -> Self {
         Self {
             kind: ItemKind::Light,
@@ -50,7 +50,7 @@ impl Item {
         }
     }
 
-    /// The pack in this place.
+    /// The color pack at this index.
     pub const fn pack(index: usize) -> Self {
         Self {
             kind: ItemKind::Pack,
@@ -64,7 +64,7 @@ impl Item {
         lights.chain((0..scene.objects.len()).map(Self::object))
     }
 
-    /// The lights, by their markers, and the objects of a scene that wear a pack.
+    /// All lights whose marker uses a color pack, and all objects that use it.
     pub fn wearing<'a>(scene: &'a Scene, pack: &'a str) -> impl Iterator<Item = Self> + 'a {
         let lights = scene.lights.iter().enumerate().filter(move |(_, light)| {
             let marker = light.marker.as_ref();
@@ -76,7 +76,7 @@ impl Item {
         lights.chain(objects.map(|(index, _)| Self::object(index)))
     }
 
-    /// The pack of an object or of a light's marker, or the one it is, by its name.
+    /// The name of the color pack of an object or of a light's marker; for a color pack, its own name.
     pub fn color_pack(self, scene: &Scene) -> Option<&str> {
         match self.kind {
             ItemKind::Light => {
@@ -91,7 +91,7 @@ impl Item {
         }
     }
 
-    /// Whether it shines, or is visible; `None` for packs, and where there is none.
+    /// Whether a light shines or an object is visible; `None` for color packs, and if there is no such item.
     pub fn is_visible(self, scene: &Scene) -> Option<bool> {
         match self.kind {
             ItemKind::Light => scene.lights.get(self.index).map(|light| light.visible),
@@ -100,7 +100,7 @@ impl Item {
         }
     }
 
-    /// Its name, if the scene has it.
+    /// The name of the item, if the scene has it.
     pub fn name(self, scene: &Scene) -> Option<&str> {
         match self.kind {
             ItemKind::Light => scene

@@ -1,4 +1,4 @@
-//! What the user is told.
+//! Messages to the user.
 
 use std::collections::HashSet;
 
@@ -9,11 +9,11 @@ use super::document::Editor;
 use crate::scene::{Animation, Object, Scene, Target};
 use crate::words::{counted, listed};
 
-/// What messages about edits are about.
+/// Value of [`Message::about`] for messages about edits.
 const EDIT: &str = "edit";
-/// What messages about meshes that are missing are about.
+/// Value of [`Message::about`] for messages about missing meshes.
 const MESHES: &str = "meshes";
-/// What messages about meshes are about whose files are broken.
+/// Value of [`Message::about`] for messages about meshes whose files are broken.
 const BROKEN: &str = "broken meshes";
 
 impl Editor {
@@ -25,54 +25,54 @@ impl Editor {
         });
     }
 
-    /// Tells the user something.
+    /// Shows the user a message.
     pub fn notify(&mut self, text: String) {
         self.say(false, "", text);
     }
 
-    /// Tells the user something, in place of what was said about the same before.
+    /// Shows the user a message that replaces earlier ones about the same.
     pub fn notify_about(&mut self, about: &'static str, text: String) {
         self.begin(about);
         self.say(false, about, text);
     }
 
-    /// Tells the user what the last step has done; nothing any more once that is undone.
+    /// Shows the user a message about the effects of the last step, which is dismissed when that is undone.
     pub fn notify_of_step(&mut self, text: String) {
         self.told_of = self.revision();
-        // Of the step before it, nothing is to be undone at once.
+        // It replaces the message about the step before, which undo would not revert first.
         self.notify_about(STEP, text);
     }
 
-    /// What was said of the last step is forgotten, if there was no other since: it is undone.
+    /// Dismisses the message about the last step, if there was no other step since: it is being undone.
     pub(super) fn forget_step(&mut self) {
         if self.told_of == self.revision() {
             self.begin(STEP);
         }
     }
 
-    /// An action is begun: what was said of it before is forgotten.
+    /// Notes that an action starts: earlier messages about it are dismissed.
     pub fn begin(&mut self, about: &'static str) {
         self.say(false, about, String::new());
     }
 
-    /// Tells the user that something went wrong.
+    /// Shows the user an error.
     pub fn report_error(&mut self, text: String) {
         self.report_error_in("", text);
     }
 
-    /// Tells the user that something went wrong in an action, see [`Self::begin`].
+    /// Shows the user an error of an action, see [`Self::begin`].
     pub fn report_error_in(&mut self, about: &'static str, text: String) {
         self.say(true, about, text);
     }
 
-    /// The last error of an action, if nobody was told of it yet: nobody is, then.
+    /// Removes and returns the last error of an action that has not been shown yet.
     pub fn take_error(&mut self, about: &str) -> Option<String> {
         let is_it = |message: &Message| message.is_error && message.about == about;
         let index = self.messages.iter().rposition(is_it)?;
         Some(self.messages.remove(index).text)
     }
 
-    /// Says which meshes could not be read.
+    /// Reports meshes that could not be read.
     pub fn tell_missing_meshes(&mut self) {
         self.begin(MESHES);
         let mut problems = self.scene.mesh_problems();
@@ -88,18 +88,19 @@ impl Editor {
         self.report_error_in(MESHES, text);
     }
 
-    /// Says that a mesh file was written by another program, and is none any more.
+    /// Reports that another program has overwritten a mesh file with something that is no mesh.
     pub(super) fn tell_broken_mesh(&mut self, why: &str) {
         let text = format!("{why}; what was read of it before stays, and is saved with the scene");
         self.report_error_in(BROKEN, text);
     }
 
-    /// One of those can be read again.
+    /// Dismisses the message about broken mesh files: one of them can be read again.
     pub(super) fn forget_broken_meshes(&mut self) {
         self.begin(BROKEN);
     }
 
-    /// What is not there any more after a step of this name: things were deleted, or these objects joined or taken apart.
+    /// Returns a message about what is lost by a step named `label` that deletes things, or joins or splits the
+    /// objects `joined`; `None` if nothing is.
     pub(super) fn lost(&self, label: &str, joined: &[usize], next: &Scene) -> Option<String> {
         let lost: Vec<String> = self
             .lost_keys(next)
@@ -119,7 +120,8 @@ impl Editor {
         keys.map(|names| format!("keys have gone as well ({names}); undo brings them back"))
     }
 
-    /// Color packs that all but the first wore, smoothness, and what was hidden among them.
+    /// Returns clauses about lost appearance: color packs of all joined objects but the first, smoothness, and which
+    /// of them were hidden.
     fn lost_looks(&self, joined: &[usize]) -> Vec<String> {
         let Some((first, others)) = joined.split_first() else {
             return Vec::new();
@@ -145,16 +147,16 @@ impl Editor {
         packs.into_iter().chain(flat).chain(hidden).collect()
     }
 
-    /// Tells why an edit is not made; false, since it was not.
+    /// Reports why an edit was refused; returns false for the caller to return.
     pub(super) fn refuse(&mut self, why: String) -> bool {
-        // One that is made anew with every step of a drag may be refused in other words each time.
+        // An edit repeated with every step of a drag may be refused with different words each time.
         self.forget_refusal();
         self.is_refused = true;
         self.report_error_in(EDIT, why);
         false
     }
 
-    /// An edit was made: why the last one was not is forgotten.
+    /// Dismisses the reason why the last edit was refused: another one was made.
     pub(super) fn forget_refusal(&mut self) {
         if std::mem::take(&mut self.is_refused) {
             self.begin(EDIT);
@@ -162,7 +164,8 @@ impl Editor {
     }
 }
 
-/// What new keys of the camera, which `name` has brought, have replaced, in words; `None` if nothing.
+/// Returns a sentence that tells which keys of the camera, those of `animation`, were replaced by new ones from
+/// `name`; `None` if there were none.
 pub fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
     let keys = counted(animation.keys.len(), "key");
     let recording = match animation.take {

@@ -1,6 +1,6 @@
-//! What matters between frames but is lost on quitting: the open document, the selection, the
-//! history, the flight. Panels read this state and push [`Action`]s, which [`Editor::apply`] carries out;
-//! documents are opened and saved by methods of their own. Knows no widgets.
+//! Editing state that outlives a frame but not the program: the open document, the selection, the undo history, the
+//! flight. Panels read this state and push [`Action`]s, which [`Editor::apply`] carries out; methods of [`Editor`]
+//! open and save documents. No dependency on widgets.
 
 mod item;
 

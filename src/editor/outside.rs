@@ -1,4 +1,4 @@
-//! What other programs, and other runs of this one, have written.
+//! Files written by other programs, and by other runs of this one.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,8 @@ use crate::files::{Stamp, is_same_file};
 use crate::scene::{Document, Leftover, MeshSource, Scene};
 
 impl Editor {
-    /// Takes up unsaved work that another run of the program left behind. What others have written to its file since
-    /// is asked about like other changes from outside.
+    /// Opens unsaved work that another run of the program left behind. If others have written its file since, the
+    /// user is asked, as for any change from outside.
     pub fn recover(&mut self, leftover: Leftover) {
         self.replace(leftover.document, leftover.path);
         self.stamp = leftover.stamp;
@@ -19,12 +19,12 @@ impl Editor {
         self.is_dirty = true;
     }
 
-    /// How the document's file is, as far as is known.
+    /// State of the document's file, as last observed.
     pub fn own_file(&self) -> OwnFile {
         self.own_file
     }
 
-    /// How it is: what no file has counts as unsaved.
+    /// Sets the state of the document's file: content that is in no file counts as unsaved.
     pub fn set_own_file(&mut self, own_file: OwnFile) {
         self.own_file = own_file;
     }
@@ -46,7 +46,7 @@ impl Editor {
         }
     }
 
-    /// Takes what another program has written in place of the scene, as a step that can be undone.
+    /// Replaces the scene with what another program has written, as a step that can be undone.
     pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
         let before = self.here();
         let theirs = Arc::new(document.scene);
@@ -54,7 +54,7 @@ impl Editor {
         (self.stamp, self.own_file) = (Some(stamp), OwnFile::Whole);
         self.saved = Arc::clone(&theirs);
         if theirs == self.scene {
-            // Other words for the same.
+            // The file differs, but describes the same scene.
             self.is_dirty = false;
             return;
         }
@@ -70,8 +70,8 @@ impl Editor {
         self.tell_missing_meshes();
     }
 
-    /// Takes what another program has written to files of meshes, wherever the document shows them: now, and before or
-    /// after any step that is undone or done again. What cannot be read any more stays as it is.
+    /// Takes mesh files that another program has written into the document: into the current scene and into every
+    /// undo and redo state. Meshes whose files can no longer be read stay as they are.
     pub fn take_meshes(&mut self, read: Vec<MeshSource>) {
         let before = self.broken.len();
         let mut names = Vec::new();
@@ -87,7 +87,7 @@ impl Editor {
                 names.push(path.to_owned());
             }
             let (own, is_good) = (read.reference(), read.problem().is_none());
-            // What was read last of what is broken is what is shown of it.
+            // A file that has become unreadable does not replace what was last read from it successfully.
             let is_replaced =
                 |old: &MeshSource| old.reference() == own && (is_good || old.problem().is_some());
             self.reread.retain(|old| !is_replaced(old));
@@ -117,8 +117,8 @@ impl Editor {
         self.tell_missing_meshes();
     }
 
-    /// Whether the document alone has what was in a file: its own is not there any more, or it or that of a mesh that is
-    /// shown holds something else now that cannot be read.
+    /// Whether the document is the only place that still has the content of a file: its own file is gone or
+    /// unreadable, or the file of a mesh in use is unreadable.
     pub(super) fn has_lost_files(&self) -> bool {
         self.own_file != OwnFile::Whole || !self.scene.shown_of(&self.broken).is_empty()
     }
@@ -131,8 +131,8 @@ impl Editor {
         }
     }
 
-    /// Says which meshes are in the scene file once it is saved like this, because their own files are gone, broken, or
-    /// in another folder; nothing for none.
+    /// Returns a clause that names the meshes that saving has taken into the scene file, because their own files are
+    /// gone, broken or in another folder; empty for none.
     pub(super) fn lost_meshes(&self, saved: &Scene) -> String {
         let broken = self.scene.shown_of(&self.broken).into_iter();
         let broken = broken.filter_map(|path| path.file_name()?.to_str());
@@ -156,20 +156,20 @@ impl Editor {
             )
     }
 
-    /// A part of the scene, as it was copied, with what mesh files hold now.
+    /// Returns a copied part of the scene with the current contents of mesh files.
     pub fn up_to_date(&self, part: &Scene) -> Scene {
         let new = part.with_read(&self.reread);
         new.unwrap_or_else(|| part.clone())
     }
 
-    /// The scene with what mesh files hold now.
+    /// Returns the scene with the current contents of mesh files.
     pub(super) fn refreshed(&self, scene: &Arc<Scene>) -> Arc<Scene> {
         let new = scene.with_read(&self.reread);
         new.map_or_else(|| Arc::clone(scene), Arc::new)
     }
 
-    /// Keeps the scene beside what another program has written; the next save replaces that. What cannot be read of it
-    /// has a stamp all the same.
+    /// Keeps the scene although another program has written its file; the next save replaces that. If the file cannot
+    /// be read, `unread` is its stamp.
     pub fn keep_mine(&mut self, theirs: Option<(Document, Stamp)>, unread: Option<Stamp>) {
         let (theirs, stamp) = theirs.map_or((None, unread), |(theirs, stamp)| {
             (Some(Arc::new(theirs.scene)), Some(stamp))

@@ -1,13 +1,13 @@
-//! What has become of the file of a document.
+//! The state of the document's file.
 
-/// How the file of a document is.
+/// State of the document's file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OwnFile {
-    /// There, or there is none.
+    /// The file exists unharmed, or the document has none.
     #[default]
     Whole,
     /// Moved or deleted.
     Gone,
-    /// Another program has written what cannot be read.
+    /// Overwritten by another program with something that cannot be read.
     Broken,
 }

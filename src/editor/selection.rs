@@ -1,4 +1,4 @@
-//! What is selected.
+//! The selection.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::item::{Item, ItemKind};
 use crate::scene::{Keys, Object, Scene};
 
-/// What is selected, and shown in the inspector.
+/// The selected things, which the inspector shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Selection {
     /// The camera.
@@ -17,13 +17,13 @@ pub enum Selection {
     World,
     /// The size of the still picture, and how it is traced.
     Render,
-    /// Items, at least one: the one that was selected last comes last.
+    /// Items, at least one; the item selected last comes last.
     Items(Vec<Item>),
     /// Keys of the animation, at least one.
     Keys(Keys),
 }
 
-/// What [`Selection::keys`] has where other things are selected.
+/// Result of [`Selection::keys`] if other things are selected.
 static NO_KEYS: Keys = Keys::new();
 
 impl From<Item> for Selection {
@@ -32,7 +32,7 @@ impl From<Item> for Selection {
     }
 }
 
-/// The camera, if there are none.
+/// Selects the camera if there are no keys.
 impl From<Keys> for Selection {
     fn from(keys: Keys) -> Self {
         if keys.is_empty() {
@@ -44,7 +44,7 @@ impl From<Keys> for Selection {
 }
 
 impl Selection {
-    /// The group that is selected: all of its objects, of which there are several, and nothing else.
+    /// The name of the selected group: all of its objects, at least two, and nothing else are selected.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
         let [first, _, ..] = self.items() else {
             return None;
@@ -56,15 +56,15 @@ impl Selection {
         is_whole.then_some(group)
     }
 
-    /// All objects of a group.
+    /// Selects all objects of a group.
     pub fn of_group(scene: &Scene, group: &str) -> Self {
         let objects = scene.objects.iter().enumerate();
         let members = objects.filter(|(_, object)| object.group == group);
         Self::all(members.map(|(index, _)| Item::object(index)))
     }
 
-    /// What is taken hold of with things of the picture: the groups that they are in; of those of which something is
-    /// selected, the things themselves.
+    /// The selection after picking `items` in the picture: an object stands for its whole group, unless something in
+    /// that group is selected already; then it stands for itself.
     #[must_use]
     pub fn picked(&self, scene: &Scene, items: &[Item]) -> Self {
         let group = |item: &Item| group_of(scene, *item);
@@ -81,8 +81,8 @@ impl Selection {
         Self::all(alone.chain(members.map(|(index, _)| Item::object(index))))
     }
 
-    /// The same with what is taken hold of with a thing of the picture, or without it if it was among them: of a group
-    /// that is selected beside other things, all of it.
+    /// The selection after toggling a thing of the picture: adds what [`Self::picked`] returns for it, or removes the
+    /// thing if it was selected. If its whole group is selected along with other things, the whole group is removed.
     #[must_use]
     pub fn toggled_at(&self, scene: &Scene, item: Item) -> Self {
         let group = group_of(scene, item).map(|group| Self::of_group(scene, group));
@@ -101,12 +101,12 @@ impl Selection {
         }
         match self.picked(scene, &[item]).items() {
             [one] => self.toggled(*one),
-            // Of a group that is selected by itself, nothing was.
+            // A whole group is only picked if nothing of it was selected.
             all => Self::all(self.items().iter().chain(all).copied()),
         }
     }
 
-    /// Whether what is selected is a group already, of one or of several, and nothing else.
+    /// Whether the selection is exactly one whole group, which may have a single member.
     pub fn is_group(&self, scene: &Scene) -> bool {
         let only = self.item().filter(|item| item.kind == ItemKind::Object);
         let only = only.and_then(|item| scene.objects.get(item.index));
@@ -120,7 +120,7 @@ impl Selection {
         }
     }
 
-    /// These, each of them once; the camera if there are none.
+    /// Selects these items, each of them once; the camera if there are none.
     pub fn all(items: impl IntoIterator<Item = Item>) -> Self {
         let mut all = Vec::new();
         let mut known = HashSet::new();
@@ -132,7 +132,7 @@ impl Selection {
         }
     }
 
-    /// All items; the one that was selected last comes last.
+    /// All selected items; the item selected last comes last.
     pub fn items(&self) -> &[Item] {
         match self {
             Self::Items(items) => items,
@@ -140,12 +140,12 @@ impl Selection {
         }
     }
 
-    /// The item that was selected last.
+    /// The item selected last.
     pub fn item(&self) -> Option<Item> {
         self.items().last().copied()
     }
 
-    /// All keys.
+    /// All selected keys.
     pub fn keys(&self) -> &Keys {
         match self {
             Self::Keys(keys) => keys,
@@ -153,13 +153,13 @@ impl Selection {
         }
     }
 
-    /// Those of a kind; the one that was selected last comes last.
+    /// The selected items of a kind; the item selected last comes last.
     pub fn of_kind(&self, kind: ItemKind) -> Vec<Item> {
         let own = self.items().iter().filter(|item| item.kind == kind);
         own.copied().collect()
     }
 
-    /// The places of those of a kind, in ascending order.
+    /// Indices of the selected items of a kind, in ascending order.
     pub fn places(&self, kind: ItemKind) -> Vec<usize> {
         let own = self.of_kind(kind).into_iter();
         let mut places: Vec<usize> = own.map(|item| item.index).collect();
@@ -167,12 +167,12 @@ impl Selection {
         places
     }
 
-    /// Whether it is among them.
+    /// Whether the item is selected.
     pub fn has(&self, item: Item) -> bool {
         self.items().contains(&item)
     }
 
-    /// For each object, of so many, whether it is among them: for whoever asks of many.
+    /// Returns for each of `count` objects whether it is selected: faster than [`Self::has`] for many objects.
     pub fn object_marks(&self, count: usize) -> Vec<bool> {
         let mut marks = vec![false; count];
         for item in self
@@ -187,9 +187,9 @@ impl Selection {
         marks
     }
 
-    /// Whether all of these are among them.
+    /// Whether all of these items are selected.
     pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
-        // Mostly, fewer are selected.
+        // The usual case: fewer items are selected.
         if self.items().len() < items.len() {
             return false;
         }
@@ -198,7 +198,7 @@ impl Selection {
         items.all(|item| selected.contains(&item))
     }
 
-    /// The middle of all that have a place; `None` if nothing has.
+    /// The mean position of all selected things that have one; `None` if there are none.
     pub fn middle(&self, scene: &Scene) -> Option<DVec3> {
         let middles = self.items().iter().filter_map(|item| match item.kind {
             ItemKind::Object => Some(scene.objects.get(item.index)?.shape.middle()),
@@ -209,7 +209,8 @@ impl Selection {
         (!middles.is_empty()).then(|| middles.iter().sum::<DVec3>() / middles.len() as f64)
     }
 
-    /// What all that have a place are turned about: a single thing about a point of its own.
+    /// The pivot about which the selected things that have a position are rotated together; a single object has its
+    /// own.
     pub fn pivot(&self, scene: &Scene) -> Option<DVec3> {
         match self.only_placed() {
             Some(item) if item.kind == ItemKind::Object => {
@@ -219,7 +220,7 @@ impl Selection {
         }
     }
 
-    /// The one that has a place, where others that are selected have none.
+    /// The only selected item that has a position, if there is exactly one.
     pub fn only_placed(&self) -> Option<Item> {
         let mut placed = self
             .items()
@@ -229,7 +230,7 @@ impl Selection {
         first.filter(|_| placed.next().is_none())
     }
 
-    /// The same with `item`, or without it if it was among them.
+    /// The selection with `item` added, or removed if it was selected.
     #[must_use]
     pub fn toggled(&self, item: Item) -> Self {
         let others = self.items().iter().copied();
@@ -238,7 +239,8 @@ impl Selection {
         Self::all(others.chain(new))
     }
 
-    /// Without what is not in the scene; the last of several items, where others are gone.
+    /// The selection without what is not in the scene. If any of several items is missing, only the last item is
+    /// kept.
     #[must_use]
     pub fn within(self, scene: &Scene) -> Self {
         let is_there = |item: &Item| item.name(scene).is_some();
@@ -254,9 +256,9 @@ impl Selection {
         }
     }
 
-    /// The same things in another state of the scene, by their names; without those that are not there. A
-    /// thing of another name in the same place is the same, if the old name is gone. Of keys in other places, only
-    /// who moved them knows where they are: the camera.
+    /// The selection carried over to another state of the scene, by name; things that are missing there are dropped.
+    /// If a name is gone, and the list has the same length, the thing is taken to be renamed at its index. Keys
+    /// cannot be followed if their number or their tracks have changed: then the camera is selected.
     #[must_use]
     pub fn followed(&self, from: &Scene, to: &Scene) -> Self {
         if matches!(self, Self::Keys(_)) && !to.animation.has_places_of(&from.animation) {
@@ -283,7 +285,7 @@ impl Selection {
     }
 }
 
-/// The group that something is in.
+/// The name of the group that an item is in.
 fn group_of(scene: &Scene, item: Item) -> Option<&str> {
     let object = scene.objects.get(item.index);
     let group = &object.filter(|_| item.kind == ItemKind::Object)?.group;

@@ -73,7 +73,7 @@ fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
     assert_eq!(editor.scene().animation, before);
     assert_eq!(editor.scene().objects[2].shape.position(), place);
 
-    // Joined and taken apart, things stay where they are on show, and what has no keys any more is said.
+    // Joined or split, things stay in the place that is shown, and the loss of keys is reported.
     editor.apply(Action::Edit(
         Edit::visible(editor.shown(), Item::object(2), true).expect("one"),
     ));
@@ -321,7 +321,7 @@ fn copies_stand_beside_each_other_however_they_were_made() {
     let edit = Edit::object(0, scene.objects[0].clone(), "center");
     editor.apply(Action::Edit(edit));
     for place in [0, 1, 0] {
-        // A copy of a copy is rounded otherwise than the second one of the first.
+        // A copy of a copy is rounded differently from the second copy of the original.
         editor.apply(Action::Edit(Edit::Duplicate(Item::object(place))));
     }
     for _ in 0..3 {
@@ -361,7 +361,7 @@ fn what_is_selected_is_followed_by_its_name() {
     let renamed = Edit::Rename(Item::object(2), "Roof".to_owned());
     editor.apply(Action::Edit(renamed));
     assert_eq!(names(&editor), ["Plane", "Roof"]);
-    // What an edit makes is selected alone, also in the place of what was.
+    // What an edit creates becomes the only selection, even at the index of something that was selected.
     editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
     assert_eq!(names(&editor), ["Roof"]);
     editor.apply(Action::Undo);
@@ -405,7 +405,7 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
     assert!(said.contains(lost), "{said}");
     assert_eq!(editor.scene().mesh_problems().count(), 0);
     assert_eq!(editor.scene().mesh_paths().len(), 1);
-    // Of a text that was pasted into no file, they are looked for beside the first one.
+    // Mesh files of a scene text without a file are looked for next to the first file that it is saved to.
     let mut pasted = Document::from_text(text).expect("a scene");
     pasted.scene.load_meshes(None);
     editor.replace(pasted, None);

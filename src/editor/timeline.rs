@@ -1,53 +1,54 @@
-//! Where on the line of time the editor is: the playhead, playing, recording.
+//! The state of the timeline: playhead, playback, recording.
 
 use std::sync::Arc;
 
 use crate::animate::{Landmark, Worst};
 use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Scene, Take};
 
-/// The picture that a deviation is told for, in pixels.
+/// Height, in pixels, of the picture that deviations are given for.
 pub const MEASURED_AT: f64 = 1024.0;
 
 /// What happens at the ends of the timeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Repeat {
-    /// It stops.
+    /// Playback stops.
     Once,
-    /// It starts again.
+    /// Playback starts again from the beginning.
     #[default]
     Loop,
-    /// It turns back.
+    /// Playback reverses.
     PingPong,
 }
 
-/// Something asked of the timeline.
+/// A request to the timeline.
 #[derive(Clone, Debug)]
 pub enum Time {
-    /// Put the playhead at the frame nearest to so many seconds.
+    /// Put the playhead at the frame nearest to this time, in seconds.
     Seek(f64),
-    /// The flight from this time on takes so many times as long: the playhead stays where it is in it.
+    /// The flight from this time on, in seconds, was stretched by this factor: the playhead keeps its place in the
+    /// flight.
     Stretched(f64, f64),
-    /// Put it so many frames further, or back.
+    /// Move the playhead by this many frames.
     Step(i64),
     /// Play or pause.
     Play(bool),
-    /// So many seconds have passed.
+    /// This many seconds have passed.
     Tick(f64),
-    /// What happens at the ends.
+    /// Choose what happens at the ends.
     Repeat(Repeat),
-    /// Playing speed, 1 is real time.
+    /// Set the playback speed; 1 is real time.
     Speed(f64),
-    /// Show the picture of the shot camera, or the one of the view.
+    /// Look through the shot camera, or else through the view's own camera.
     LookThrough(bool),
-    /// Start to record what the camera does.
+    /// Start to record the movement of the camera.
     Record,
-    /// The camera as it is, at this time of the clock in seconds, is part of the recording.
+    /// Add the current camera to the recording, at this clock time in seconds.
     Sample(f64),
-    /// Make keys of what was recorded.
+    /// Stop recording and make keys of the recording.
     Stop,
-    /// What the samples of a take see, which was asked for, see `Editor::wanted_survey`.
+    /// The survey of a take that was requested by `Editor::wanted_survey`: what its samples see.
     Surveyed(Arc<Take>, Vec<Vec<Landmark>>),
-    /// Make keys of the take anew: off by so many pixels of a picture 1024 high at most.
+    /// Make keys of the take again, with this tolerance in pixels of a picture 1024 high.
     Simplify(f64),
 }
 
@@ -61,27 +62,27 @@ pub struct Timeline {
     pub is_playing: bool,
     /// What happens at the ends.
     pub repeat: Repeat,
-    /// 1 is real time.
+    /// Playback speed; 1 is real time.
     pub speed: f64,
-    /// Whether the picture is that of the shot camera, if there are keys.
+    /// Whether to look through the shot camera, if there are keys.
     pub(super) wants_shot: bool,
-    /// How far keys made of a take may be off, in pixels of a picture 1024 high.
+    /// Most deviation of keys from their take, in pixels of a picture 1024 high.
     pub tolerance: f64,
-    /// Where the keys are off the recording the most, in the same pixels; `None` without one.
+    /// Where the keys deviate from the recording the most, in the same pixels; `None` without a recording.
     pub worst: Option<Worst>,
-    /// How often the view jumped in the flight that was made into keys last.
+    /// Number of jumps of the view in the flight that was last made into keys.
     pub jumps: usize,
-    /// Whether the keys are others than were made of the recording.
+    /// Whether the keys differ from those made of the recording.
     pub is_edited: bool,
-    /// Whether the user has chosen to see the shot camera from outside.
+    /// Whether the user has chosen not to look through the shot camera.
     pub(super) stays_outside: bool,
-    /// Whether the view was flown by hand since it was that of the shot camera.
+    /// Whether the view was flown by hand since it last was that of the shot camera.
     pub(super) is_flown: bool,
     is_returning: bool,
     pub(super) recording: Option<Recording>,
 }
 
-/// What is looked at, and when.
+/// What is looked at, and at which time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ViewState {
     wants_shot: bool,
@@ -94,7 +95,7 @@ pub struct ViewState {
 #[derive(Clone, Debug)]
 pub(super) struct Recording {
     pub take: Take,
-    /// What the clock showed at the first sample.
+    /// Clock time of the first sample, in seconds.
     start: Option<f64>,
 }
 
@@ -132,8 +133,8 @@ impl Timeline {
         }
     }
 
-    /// Looks at what was looked at before a step that is taken back, or done again, if that has moved the view, or the
-    /// times of keys, from `here` to `there`.
+    /// On undo or redo of a step that leads from the scene `here` to `there`: restores the view from `before` the
+    /// step if the step moved the camera, and the playhead if the step changed the length of the flight.
     pub(super) fn look_again(&mut self, before: ViewState, here: &Scene, there: &Scene) {
         if here.camera != there.camera {
             (self.wants_shot, self.is_flown) = (before.wants_shot, before.is_flown);
@@ -141,14 +142,14 @@ impl Timeline {
         let [here, there] = [here, there].map(|scene| &scene.animation.keys[..]);
         let is_same_way =
             here.len() == there.len() && here.iter().zip(there).all(|(a, b)| a.value == b.value);
-        // As long or short as it was before, all but its start comes at other times.
+        // A step that stretches the flight changes the times of all keys but the first.
         let mut later = here.iter().zip(there).skip(1);
         if is_same_way && here.len() > 1 && later.all(|(a, b)| a.time != b.time) {
             self.playhead = before.playhead;
         }
     }
 
-    /// Samples recorded so far, and their seconds; `None` while nothing is recorded.
+    /// The number of samples recorded so far, and their duration in seconds; `None` if nothing is being recorded.
     pub fn recorded(&self) -> Option<(usize, f64)> {
         let take = &self.recording.as_ref()?.take;
         Some((
@@ -157,13 +158,13 @@ impl Timeline {
         ))
     }
 
-    /// Whether what is recorded is as long as it can be.
+    /// Whether the recording has reached its greatest length.
     pub(super) fn is_full(&self) -> bool {
         let count = self.recorded().map_or(0, |(count, _)| count);
         count >= MAX_KEYS
     }
 
-    /// The time that is on show: that of the frame that the playhead has reached.
+    /// The time that is shown: that of the frame that the playhead has reached.
     pub fn shown_time(&self, animation: &Animation) -> f64 {
         animation.time_of(animation.frame_at(self.playhead))
     }
@@ -173,14 +174,15 @@ impl Timeline {
         self.is_returning = false;
     }
 
-    /// It is not on a frame then: to be drawn back and forth takes it nowhere else.
+    /// Moves the playhead with a flight that is stretched by `by` from the time `from` on. The playhead is not
+    /// rounded to a frame, so that stretching back and forth during a drag returns it to where it was.
     pub(super) fn stretch(&mut self, from: f64, by: f64) {
         if self.playhead > from {
             self.playhead = (from + (self.playhead - from) * by).min(MAX_SECONDS);
         }
     }
 
-    /// Whether the shot camera is on its way at the time that is on show.
+    /// Whether the shown time is within the flight of the shot camera.
     pub(super) fn is_in_flight(&self, animation: &Animation) -> bool {
         let time = self.shown_time(animation);
         match &animation.keys[..] {
@@ -192,13 +194,14 @@ impl Timeline {
         }
     }
 
-    /// Time passes; at the ends, what was chosen happens.
+    /// Advances the playhead if it is playing; at the ends, follows [`Self::repeat`].
     pub(super) fn tick(&mut self, seconds: f64, animation: &Animation) {
         if !self.is_playing {
             return;
         }
         if let Some((_, recorded)) = self.recorded() {
-            // What is seen meanwhile is what is seen when that is played: it does not begin again.
+            // Playing the recording later shows the scene at the same times as it was shown while recording: the
+            // playhead does not wrap.
             self.playhead = recorded;
             return;
         }
@@ -220,8 +223,8 @@ impl Timeline {
                 self.playhead = (start + step).rem_euclid(round);
             }
             Repeat::PingPong => {
-                // On a line whose second half is the way back; both have the last frame in common, which is on show as
-                // long as others.
+                // Positions on a line whose second half is the way back. Both halves share the last frame, which is
+                // shown as long as any other.
                 let frame = 1.0 / animation.frames_per_second;
                 let last = animation.time_of(animation.frame_count());
                 let behind = last + frame;

@@ -1,4 +1,4 @@
-//! GIF and APNG, made here.
+//! GIF and APNG encoding, without ffmpeg.
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -13,21 +13,21 @@ use super::frame_file::{in_order, read};
 use super::sequence::Sequence;
 use crate::image::Image;
 
-/// Pixels of a frame that the colours of a GIF are learnt from: of so many more, one of so many is looked at, but of
-/// no more than ten.
+/// Pixels per frame that the palette of a GIF is learnt from: of larger frames, one pixel of `n` is sampled, with `n`
+/// at most 10.
 const GIF_PIXELS: u32 = 100_000;
 
-/// Hundredths of a second that a GIF shows a frame at least.
+/// Shortest time that a GIF shows a frame, in hundredths of a second.
 const SHORTEST: u32 = 2;
 
-/// The longest seconds that a GIF shows a frame.
+/// Longest time that a GIF can show a frame, in seconds.
 pub const LONGEST_IN_GIF: f64 = 655.35;
 
-/// The longest seconds that an APNG shows a frame.
+/// Longest time that an APNG can show a frame, in seconds.
 pub const LONGEST_IN_APNG: f64 = 65_535.0;
 
-/// Writes a GIF into a file that is to be that of this path. The frames, which take several times as long to become
-/// some of 256 colours as to be traced, are packed on the threads of the current rayon pool.
+/// Writes a GIF into `file`, which is to be moved to `path`. Reducing the frames to 256 colours takes several times
+/// as long as tracing them; they are packed on the threads of the current rayon pool.
 ///
 /// # Errors
 /// [`VideoError`].
@@ -60,10 +60,10 @@ pub fn gif(
     file.flush().map_err(|error| VideoError::disk(path, &error))
 }
 
-/// About how long so many threads pack the frames of a sequence, if they are like this picture.
+/// Estimates how long `threads` threads take to pack the frames of a sequence, if all are like `image`.
 pub fn time_of_gif(sequence: &Sequence, image: &Image, threads: usize) -> Duration {
     let (width, height) = sequence.size();
-    // No larger than they are: what is learnt of small ones takes long for each of their pixels.
+    // Thinned to about the size of the frames: per pixel, learning the palette takes longer for small pictures.
     let step = (image.width / width as usize).max(1);
     let small = image.decimated(step);
     let size = (small.width as u32, small.height as u32);
@@ -77,14 +77,14 @@ pub fn time_of_gif(sequence: &Sequence, image: &Image, threads: usize) -> Durati
     Duration::from_secs_f64(of_pixel * f64::from(width) * f64::from(height) * rounds)
 }
 
-/// Of how many pixels of the frames of a sequence one is looked at.
+/// Sampling step for the palette: one pixel of this many is looked at.
 fn speed_of(sequence: &Sequence) -> i32 {
     let (width, height) = sequence.size();
     let speed = (width.saturating_mul(height) / GIF_PIXELS).clamp(1, 10);
     speed.cast_signed()
 }
 
-/// A frame of a GIF, packed, that is shown for so many hundredths of a second.
+/// Packs a frame of a GIF that is shown for this many hundredths of a second.
 fn gif_frame(image: RgbaImage, speed: i32, hundredths: u32) -> Frame<'static> {
     let (width, height) = image.dimensions();
     let mut pixels = image.into_raw();
@@ -95,9 +95,10 @@ fn gif_frame(image: RgbaImage, speed: i32, hundredths: u32) -> Frame<'static> {
     frame
 }
 
-/// How many frames of so many a GIF leaves out.
+/// The number of frames, of `count`, that a GIF leaves out.
 pub fn left_out(frames_per_second: f64, count: usize) -> usize {
-    // A window asks in every frame, and there may be a million: all are long enough at this rate.
+    // Shortcut: at this rate, every frame lasts long enough. A window asks in every frame of its own, and there may
+    // be a million frames here.
     if frames_per_second * f64::from(SHORTEST) <= 100.0 {
         return 0;
     }
@@ -107,9 +108,9 @@ pub fn left_out(frames_per_second: f64, count: usize) -> usize {
     ends.filter(is_out).count()
 }
 
-/// When the frames of a GIF end, in hundredths of a second, its clock: as many pass in a second as shall. Where
-/// a frame would be shown for less than two, which players take for ten, it ends when the one before does: it
-/// is left out, but for the last one, which is shown for two.
+/// End times of the frames of a GIF, in hundredths of a second, the unit of its clock, rounded so that the frame rate
+/// is kept on average. A frame that would be shown for less than two, which players take for ten, ends when the
+/// previous one does: it is left out, except for the last one, which is shown for two.
 fn clock_ends(frames_per_second: f64, count: usize) -> impl Iterator<Item = u32> {
     let mut last = 0;
     (1..=count).map(move |shown| {
@@ -123,8 +124,8 @@ fn clock_ends(frames_per_second: f64, count: usize) -> impl Iterator<Item = u32>
     })
 }
 
-/// The fraction of two short whole numbers that is nearest to a number above 0: the last convergent of its
-/// continued fraction that they can hold (Hardy and Wright, "An introduction to the theory of numbers", ch. 10).
+/// Returns the fraction of two `u16` nearest to a positive number: the last convergent of its continued fraction that
+/// fits (Hardy and Wright, "An introduction to the theory of numbers", ch. 10).
 fn nearest_fraction(number: f64) -> (u16, u16) {
     let (mut before, mut best) = ((0.0, 1.0), (1.0, 0.0));
     let mut rest = number;
@@ -135,7 +136,7 @@ fn nearest_fraction(number: f64) -> (u16, u16) {
             break;
         }
         (before, best) = (best, next);
-        // What is left is rounding.
+        // The remainder is rounding error.
         if (best.0 / best.1 - number).abs() < 1e-12 * number {
             break;
         }
@@ -144,7 +145,7 @@ fn nearest_fraction(number: f64) -> (u16, u16) {
     (best.0 as u16, (best.1 as u16).max(1))
 }
 
-/// Writes an animated PNG into a file that is to be that of this path.
+/// Writes an animated PNG into `file`, which is to be moved to `path`.
 ///
 /// # Errors
 /// [`VideoError`].

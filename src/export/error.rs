@@ -1,4 +1,4 @@
-//! Why something could not be exported.
+//! Errors of exports.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use crate::image::FormatError;
 use crate::trace::PoolError;
 
-/// Why a picture could not be written.
+/// The reason why a picture could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// The file name says no known format.
+    /// The extension of the file name is not that of a known format.
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The picture could not be encoded.
@@ -18,29 +18,29 @@ pub enum ExportError {
     Encode {
         /// The file.
         path: PathBuf,
-        /// What the encoder said.
+        /// Error of the encoder.
         source: image::ImageError,
     },
-    /// The scene cannot be put into words, which its fingerprint is made of.
+    /// The scene cannot be serialized, which its fingerprint requires.
     #[error("the scene cannot be written: {0}")]
     Unwritable(#[from] ron::Error),
-    /// A file is there that cannot be read.
+    /// A file exists but cannot be read.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system answered.
+        /// Error of the system.
         source: io::Error,
     },
-    /// The disk said no.
+    /// The file could not be written.
     #[error("cannot write {path}: {source}", path = .path.display())]
     Disk {
         /// The file.
         path: PathBuf,
-        /// What the system answered.
+        /// Error of the system.
         source: io::Error,
     },
-    /// A frame was put in the place of one that was made.
+    /// A frame file was replaced by another export.
     #[error(
         "{path} is not the frame that was made, any more: another export has put it there; give each a folder of its own",
         path = .path.display()
@@ -51,40 +51,40 @@ pub enum ExportError {
     },
 }
 
-/// Why there is no video.
+/// The reason why a video could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VideoError {
-    /// The ending says no known kind.
+    /// The extension is not that of a known video format.
     #[error("{0:?} ends in no known video format; end it in .mp4, .mov, .mkv, .gif or .apng")]
     Unknown(String),
-    /// It was not wanted any more.
+    /// Making the video was cancelled.
     #[error("the video was stopped, and is not there; its frames are")]
     Stopped,
-    /// No threads could be had to make it.
+    /// No threads could be started to make it.
     #[error(transparent)]
     Threads(#[from] PoolError),
-    /// There is no ffmpeg.
+    /// ffmpeg was not found.
     #[error(
         "ffmpeg is not installed, or not on the PATH; the frames are there, and {how}\n.gif and .apng need no ffmpeg"
     )]
     NoFfmpeg {
-        /// What makes the video of them.
+        /// How to make the video of the frames.
         how: String,
     },
-    /// It ended with an error.
+    /// ffmpeg ended with an error.
     #[error("ffmpeg failed:\n{said}")]
     Ffmpeg {
-        /// The end of what it said.
+        /// The end of its output.
         said: String,
     },
-    /// The kind of video holds no such frames.
+    /// The video format cannot hold such frames.
     #[error("{why}")]
     Unfit {
-        /// What it holds, and what would do.
+        /// What the format can hold, and which alternatives there are.
         why: String,
     },
-    /// A frame is another one than was made.
+    /// A frame file was replaced by one of another size.
     #[error(
         "{path} is {width}×{height} pixels now: another export has put it there; give each a folder of its own",
         path = .path.display(), width = .size.0, height = .size.1
@@ -95,7 +95,7 @@ pub enum VideoError {
         /// Its width and height in pixels.
         size: (u32, u32),
     },
-    /// A frame of the same size, or the notes about all of them cannot be read.
+    /// A frame file was replaced by one of the same size, or the folder's manifest cannot be read.
     #[error(transparent)]
     Frames(#[from] ExportError),
     /// A frame could not be read.
@@ -103,7 +103,7 @@ pub enum VideoError {
     Frame {
         /// The frame's file.
         path: PathBuf,
-        /// What the decoder said.
+        /// Error of the decoder.
         source: image::ImageError,
     },
     /// The video could not be written.
@@ -111,16 +111,16 @@ pub enum VideoError {
     Disk {
         /// The video's file.
         path: PathBuf,
-        /// What the system or the encoder answered.
+        /// Error of the system or of the encoder.
         why: String,
     },
 }
 
-/// Most bytes of what another program said that are told.
+/// Most bytes of another program's output that are reported.
 const MOST_SAID: usize = 4000;
 
 impl VideoError {
-    /// The video could not be written, for this reason.
+    /// The error for a video that could not be written.
     pub fn disk(path: &Path, why: &dyn std::error::Error) -> Self {
         Self::Disk {
             path: path.to_owned(),
@@ -137,7 +137,8 @@ impl VideoError {
     }
 }
 
-/// The end of what another program said, which tells why it failed. What would move a terminal's cursor is left out.
+/// Returns the end of another program's output, which tells why it failed. Control characters, which could move a
+/// terminal's cursor, become spaces.
 pub fn last_lines(said: &[u8]) -> String {
     let end = &said[said.len().saturating_sub(MOST_SAID)..];
     let said = String::from_utf8_lossy(end);

@@ -1,4 +1,4 @@
-//! An export on its way: frames are traced by one thread pool while those before are packed and written.
+//! A running export: frames are traced by one thread pool while earlier ones are encoded and written.
 
 use std::collections::VecDeque;
 use std::io;
@@ -17,48 +17,48 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
 
-/// Threads that one frame keeps busy: the more there are, the longer they wait for the last pieces of a
-/// picture, so that every so many trace a frame of their own.
+/// Threads per frame if several frames are traced side by side: the more threads trace one picture, the longer they
+/// wait for its last pieces.
 const THREADS_PER_FRAME: usize = 8;
 
-/// Frames with more pixels than this are traced strip by strip while they are written.
+/// Most pixels of a frame that is traced as a whole; larger frames are traced strip by strip while they are written.
 const LARGE: u64 = 1 << 24;
 
-/// Height of the small picture of a frame, in pixels.
+/// Most rows of the small picture of a frame.
 const SMALL: u32 = 64;
 
-/// What has been done.
+/// Progress of an export.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exported {
     /// Frames in all.
     pub total: usize,
-    /// Frames that were there already.
+    /// Frames that existed and were up to date.
     pub kept: usize,
     /// Frames that were written.
     pub written: usize,
 }
 
 impl Exported {
-    /// Frames that are there by now.
+    /// Frames that are finished so far.
     pub fn so_far(&self) -> usize {
         self.kept + self.written
     }
 }
 
-/// How a step ended.
+/// The outcome of a step.
 #[derive(Debug)]
 pub enum ExportStep {
     /// There is more to do.
     Going,
-    /// Every frame is on its way; [`Exporting::finish`] waits for the last.
+    /// Every frame is traced, and may still be being written; [`Exporting::finish`] waits for the last.
     Done,
-    /// It was stopped in a frame, which is the next again.
+    /// Stopped within a frame, which is traced again next.
     Stopped,
     /// A frame could not be written.
     Failed(ExportError),
 }
 
-/// A frame that is not there as it should be, and what is traced for it.
+/// A frame that is missing or outdated, and what is needed to trace it.
 struct Due {
     frame: u64,
     shown: Arc<Scene>,
@@ -67,7 +67,7 @@ struct Due {
     planner: Planner,
 }
 
-/// What a large picture shows, in small.
+/// Traces a small version of a large picture.
 fn small_picture(planner: &mut Planner, shown: &Scene, request: &RenderRequest) -> Option<Image> {
     let step = request.height.div_ceil(SMALL).max(1);
     let small = RenderRequest {
@@ -85,11 +85,11 @@ pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
     left: VecDeque<u64>,
-    /// What each frame that was looked at shows.
+    /// Fingerprints of the frames that were looked at.
     looked_at: Vec<(u64, Hash)>,
-    /// Started with the first frame that is written.
+    /// Started with the first frame that is to be written.
     writers: Option<Writers>,
-    /// Frames that the writers have not told about.
+    /// Frames given to the writers whose results have not arrived.
     on_the_way: usize,
     spare: Vec<Film>,
     planner: Planner,
@@ -107,7 +107,7 @@ impl std::fmt::Debug for Exporting {
 }
 
 impl Exporting {
-    /// Opens the folder.
+    /// Creates the folder if needed, and reads its manifest.
     ///
     /// # Errors
     /// [`ExportError`], if the folder cannot be made or read.
@@ -131,8 +131,8 @@ impl Exporting {
         })
     }
 
-    /// Traces several frames side by side where there are many threads: for those who do nothing else, since all
-    /// that are begun are lost where a step is stopped.
+    /// Traces several frames side by side if there are many threads. Only for programs that do nothing else: if a
+    /// step is stopped, all frames begun in it are lost.
     #[must_use]
     pub fn side_by_side(self) -> Self {
         Self {
@@ -141,7 +141,7 @@ impl Exporting {
         }
     }
 
-    /// What has been done so far.
+    /// The progress so far.
     pub fn done(&self) -> Exported {
         self.done
     }
@@ -151,11 +151,11 @@ impl Exporting {
         self.last.as_ref()
     }
 
-    /// Looks at the next frame, or at several where there are many threads, and traces what is not there as it
-    /// should be, on the threads of the current rayon pool.
+    /// Checks the next frame, or several if there are many threads, and traces what is missing or outdated on the
+    /// threads of the current rayon pool.
     pub fn step(&mut self, control: &RenderControl) -> ExportStep {
         self.try_step(control).unwrap_or_else(|error| {
-            // What else is on the way is written whole, or removed, before anybody ends the program.
+            // Frames on their way are written completely, or removed, before the program can end.
             let _ = self.finish();
             ExportStep::Failed(error)
         })
@@ -201,7 +201,7 @@ impl Exporting {
         Ok(ExportStep::Stopped)
     }
 
-    /// Whether a frame is too large to be in memory as a whole.
+    /// Whether frames are too large to be kept in memory as a whole.
     fn is_large(&self) -> bool {
         let (width, height) = self.sequence.size();
         LARGE < u64::from(width) * u64::from(height)
@@ -234,9 +234,10 @@ impl Exporting {
         Ok(step)
     }
 
-    /// The next frames that have to be traced, of as many as are traced side by side; the others are there.
+    /// Takes the next frames, as many as are traced side by side, and returns those that have to be traced; the
+    /// others are up to date.
     fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
-        // The others share what the first one has planned.
+        // The first frame is traced alone, as the others share what its planner has prepared.
         let is_first = self.last.is_none();
         let wanted = if self.is_side_by_side && !is_first && !self.is_large() {
             Threads::current() / THREADS_PER_FRAME
@@ -269,7 +270,7 @@ impl Exporting {
         Ok(due)
     }
 
-    /// Sends a frame on its way to the disk.
+    /// Hands a frame to the writers.
     fn write(&mut self, due: Due, cost: &RenderCost) -> Result<(), ExportError> {
         self.planner = due.planner;
         let step = due.film.size().1.div_ceil(SMALL as usize).max(1);
@@ -287,7 +288,7 @@ impl Exporting {
             time: cost.time,
         });
         self.writers = Some(writers);
-        // They hang up only after a frame that failed, whose result tells why.
+        // They stop only after a frame that failed, whose result has the reason.
         if is_taken {
             Ok(())
         } else {
@@ -295,10 +296,10 @@ impl Exporting {
         }
     }
 
-    /// Waits until the last frame is on the disk.
+    /// Waits until the last frame is written.
     ///
     /// # Errors
-    /// [`ExportError`] of a frame that was not written, or is not there any more.
+    /// [`ExportError`] of a frame that was not written, or was replaced since.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
         let mut all = Ok(());
         for result in self.writers.take().into_iter().flat_map(Writers::finish) {
@@ -316,7 +317,7 @@ impl Exporting {
         Ok(self.done)
     }
 
-    /// Another export may have put frames of its own in the place of some.
+    /// Checks that no other export has replaced frames by its own.
     fn check_frames(&self) -> Result<(), ExportError> {
         let manifest = self.sequence.manifest()?;
         let is_other = |(frame, fingerprint): &&(u64, Hash)| {

@@ -1,4 +1,4 @@
-//! Videos by ffmpeg.
+//! Videos made by ffmpeg.
 
 use std::fs;
 use std::io::{self, Read as _, Write as _};
@@ -16,7 +16,8 @@ use crate::files::absolute;
 use crate::image::Format;
 use crate::words::for_shell;
 
-/// Has ffmpeg make a video in a file that is to be that of a path, with these words about the codec.
+/// Has ffmpeg make a video in the file `unfinished`, which is to be moved to `path`, with these arguments for the
+/// codec.
 ///
 /// # Errors
 /// [`VideoError`].
@@ -37,15 +38,16 @@ pub fn by_ffmpeg(
             return Err(VideoError::Ffmpeg { said });
         }
     };
-    // All that it says is heard while it is fed: it stops for whoever does not listen.
+    // Its output is read while it is fed: it would block on a full pipe.
     let stderr = ffmpeg.stderr.take();
     let listener = thread::spawn(move || {
         let mut said = Vec::new();
-        // What was heard before an error is all there is.
+        // On an error, what was read so far is kept.
         let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
         said
     });
-    // A program that takes no more frames is not waited for where nobody can stop it.
+    // Frames are fed by a thread of their own: a write to an ffmpeg that takes no more would block, and could not be
+    // cancelled.
     let fed = Arc::new(AtomicUsize::new(0));
     let feeder = thread::spawn({
         let (sequence, pipe) = (sequence.clone(), ffmpeg.stdin.take());
@@ -79,7 +81,7 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
         Format::Png => "png",
         Format::Ppm | Format::Exr => "ppm",
     };
-    // Without `-xerror`, it says that the disk is full and ends as if all were well.
+    // Without `-xerror`, ffmpeg reports a full disk but exits successfully.
     let manner = ["-hide_banner", "-loglevel", "error", "-xerror", "-y"];
     Command::new("ffmpeg")
         .args(manner)
@@ -93,7 +95,7 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
         .spawn()
 }
 
-/// Gives it the frames. Whether it took all of them: it hangs up when it fails.
+/// Feeds it the frames. Returns whether it took all of them: it closes the pipe when it fails.
 fn feed(
     sequence: &Sequence,
     pipe: Option<ChildStdin>,
@@ -104,7 +106,7 @@ fn feed(
     };
     for (index, frame) in sequence.frames.iter().enumerate() {
         let bytes = match sequence.format {
-            // No pipe tells where one of these ends.
+            // In a pipe, the end of an EXR frame cannot be found.
             Format::Exr => as_ppm(sequence, frame)?,
             Format::Png | Format::Ppm => as_it_is(sequence, frame)?,
         };
@@ -116,7 +118,7 @@ fn feed(
     Ok(true)
 }
 
-/// How the video is made once ffmpeg is there: by hand, where one line does it.
+/// Tells how to make the video once ffmpeg is installed: by a command line if one suffices.
 fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
         Some(command) => format!("this makes the video of them:\n{command}"),
@@ -124,13 +126,14 @@ fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     }
 }
 
-/// What one would type to make the video by hand.
+/// The command line that makes the video by hand; `None` if there is none.
 fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
     if sequence.format == Format::Exr {
-        // No pipe tells where one of these ends, and ffmpeg makes other levels of light than we do.
+        // In a pipe, the end of an EXR frame cannot be found, and ffmpeg converts light to other 8-bit levels than
+        // Glint.
         return None;
     }
-    // What a name may begin with or have in it means something else to ffmpeg.
+    // Paths are absolute: ffmpeg gives a meaning to what a name may begin with or contain.
     let fps = sequence.frames_per_second();
     let codec: Vec<String> = codec.split(' ').map(for_shell).collect();
     let output = for_shell(&absolute(path).display().to_string());
@@ -139,7 +142,7 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
     let count = sequence.frames.count();
     let in_a_row = first..first + count as u64;
     if sequence.frames.iter().eq(in_a_row) {
-        // To ffmpeg, all of the path is a pattern.
+        // ffmpeg takes the whole path for a pattern, so each `%` in the folder is escaped.
         let folder = absolute(&sequence.folder).display().to_string();
         let folder = folder.replace('%', "%%");
         let names = format!("{}.{}", sequence.pattern.text(), sequence.format.ending());

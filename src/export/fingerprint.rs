@@ -1,4 +1,4 @@
-//! What tells whether a frame that is there shows what it shall.
+//! Fingerprints that tell whether an existing frame is up to date.
 
 use std::sync::Arc;
 
@@ -9,11 +9,11 @@ use super::manifest::Hash;
 use crate::image::Format;
 use crate::scene::{ColorPack, Packs, Scene};
 
-/// A hash of everything that decides a frame's bytes: what is seen in it, how it is traced, the format and the version
-/// of the program.
+/// Returns a hash of everything that determines the bytes of a frame: what is visible in it, how it is traced, the
+/// format and the version of the program.
 ///
 /// # Errors
-/// [`ExportError::Unwritable`], for a scene that has no text.
+/// [`ExportError::Unwritable`], for a scene that cannot be serialized.
 pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
     let text = ron::to_string(&bare(shown))?;
     let mut hasher = blake3::Hasher::new();
@@ -23,8 +23,8 @@ pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
     Ok(hasher.finalize())
 }
 
-/// The same scene, whatever its things are called, without what no frame shows. What is hidden stays in it: how much
-/// there is in a scene may decide how it is traced.
+/// Returns the scene without names and without what no frame shows. Hidden things stay: the number of things in a
+/// scene may determine how it is traced.
 fn bare(shown: &Scene) -> Scene {
     let mut bare = Scene {
         animation: Arc::default(),
@@ -41,7 +41,7 @@ fn bare(shown: &Scene) -> Scene {
     bare
 }
 
-/// Numbers in place of the names of the packs that are worn; the others go.
+/// Replaces the names of color packs in use by numbers, and drops unused ones.
 fn number_packs(scene: &mut Scene) {
     let worn = scene.worn_packs();
     let packs = scene.color_packs.iter();

@@ -1,4 +1,4 @@
-//! Frames that are read to become a video.
+//! Reading frames to make a video of them.
 
 use std::fs;
 use std::io::Cursor;
@@ -12,11 +12,11 @@ use super::sequence::Sequence;
 use crate::image::{Format, Image, LinearImage};
 use crate::trace::Threads;
 
-/// Prepares frames of a sequence on the threads of the current rayon pool, and hands them on in their order. With each
-/// comes how many are done then, which `go_on` is told; it says whether more are wanted.
+/// Prepares frames of a sequence on the threads of the current rayon pool, and passes them to `hand_on` in order.
+/// Each comes with the number of frames done by then, which is passed to `go_on`; that returns whether to continue.
 ///
 /// # Errors
-/// The first one that is met, after the frames before were handed on; [`VideoError::Stopped`].
+/// The first one that occurs, after the frames before it were handed on; [`VideoError::Stopped`].
 pub fn in_order<F: Send, P: Send>(
     sequence: &Sequence,
     (mut frames, go_on): (
@@ -43,7 +43,7 @@ pub fn in_order<F: Send, P: Send>(
     }
 }
 
-/// The file of a frame.
+/// Returns the bytes of a frame's file.
 ///
 /// # Errors
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
@@ -58,7 +58,7 @@ pub fn as_it_is(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> 
     Ok(bytes)
 }
 
-/// Another export into the folder may have put frames of its own in place of those that were made.
+/// Checks the size of a frame: another export into the folder may have replaced it.
 fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), VideoError> {
     if size == sequence.size() {
         return Ok(());
@@ -69,7 +69,7 @@ fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), 
     })
 }
 
-/// A frame as PPM.
+/// Returns a frame as PPM.
 ///
 /// # Errors
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
@@ -82,7 +82,7 @@ pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     Ok(bytes.into_inner())
 }
 
-/// A frame of 8 bits, of whatever format.
+/// Reads a frame of any format, and converts it to 8 bits.
 ///
 /// # Errors
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
@@ -93,7 +93,7 @@ pub fn read(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
     let Some(light) = image.as_rgb32f() else {
         return Ok(image.to_rgba8());
     };
-    // As the tracer rounds: other libraries know of other curves.
+    // Rounded as by the tracer: other libraries apply other curves.
     let (width, height) = light.dimensions();
     let levels = LinearImage {
         width: width as usize,
@@ -104,7 +104,8 @@ pub fn read(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
     Ok(RgbaImage::from_raw(width, height, levels).unwrap_or_default())
 }
 
-/// Frames may be as large as scenes allow, which is more than a decoder expects of strangers.
+/// Decodes without limits: frames may be as large as scenes allow, which is beyond a decoder's default limits for
+/// untrusted files.
 fn decode(path: &Path) -> ImageResult<DynamicImage> {
     let mut reader = ImageReader::open(path)?;
     reader.no_limits();

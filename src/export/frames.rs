@@ -1,37 +1,37 @@
-//! Which frames: sets such as `1-202`, `1,4` and `1-10:3`, as farms write them.
+//! Sets of frames such as `1-202`, `1,4` and `1-10:3`, in the notation of render farms.
 
 use std::fmt;
 
 /// Most frames of one set.
 const MOST: u64 = 1_000_000;
 
-/// Frames in order, each once; counted from 1.
+/// Frames in ascending order, each once; counted from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Frames(Vec<u64>);
 
 /// A text that is no set of frames.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FramesError {
-    /// It is not written like one.
+    /// The text does not follow the notation.
     #[error("expected frames such as 1-202, 1,4 or 1-10:3, counted from 1; found {0:?}")]
     Syntax(String),
     /// A range ends before it begins.
     #[error("{last} comes before {first} in the frames {text:?}")]
     Backwards {
-        /// Where it begins.
+        /// First frame of the range.
         first: u64,
-        /// Where it ends.
+        /// Last frame of the range.
         last: u64,
         /// The whole text.
         text: String,
     },
-    /// More than can be handled at once.
+    /// There are more frames than can be handled at once.
     #[error("there may be at most {MOST} frames at once: ask for some of them, such as 1-{MOST}")]
     TooMany,
 }
 
 impl Frames {
-    /// All frames from the first to this one.
+    /// All frames from 1 to `last`.
     ///
     /// # Errors
     /// [`FramesError::TooMany`].
@@ -42,7 +42,7 @@ impl Frames {
         Ok(Self((1..=last).collect()))
     }
 
-    /// Reads a set: numbers and ranges, apart by commas; a range may have a step.
+    /// Parses a set: numbers and ranges, separated by commas; a range may have a step.
     ///
     /// # Errors
     /// [`FramesError`]: what was expected.
@@ -79,10 +79,10 @@ impl Frames {
         self.0.iter().copied()
     }
 
-    /// Those that are not of a kind; none may be left.
+    /// The frames for which `is_so` is false; there may be none.
     ///
     /// # Errors
-    /// Where one is not known to be.
+    /// The first error of `is_so`.
     pub fn without<E>(&self, is_so: impl Fn(u64) -> Result<bool, E>) -> Result<Self, E> {
         let mut others = Vec::new();
         for frame in self.iter() {
@@ -93,26 +93,26 @@ impl Frames {
         Ok(Self(others))
     }
 
-    /// Whether they are equally far apart.
+    /// Whether the frames are equally far apart.
     pub fn are_even(&self) -> bool {
         let mut apart = self.0.windows(2).map(|pair| pair[1] - pair[0]);
         let first = apart.next();
         apart.all(|step| Some(step) == first)
     }
 
-    /// How many there are.
+    /// The number of frames.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// The last of them.
+    /// The last frame.
     pub fn last(&self) -> Option<u64> {
         self.0.last().copied()
     }
 }
 
 impl fmt::Display for Frames {
-    /// In as few ranges as there are gaps; three and more that are equally far apart are a range with a step.
+    /// Writes as few ranges as possible; three or more frames that are equally far apart become a range with a step.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut rest = &self.0[..];
         let mut comma = "";

@@ -11,25 +11,25 @@ use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
 
-/// Most letters of the name of a job: Open Job Description, template schemas 2023-09, `<JobName>`.
+/// Most characters of a job's name: Open Job Description, template schemas 2023-09, `<JobName>`.
 const LONGEST_NAME: usize = 128;
 
-/// Frames that one task makes, unless the farm says otherwise.
+/// Frames per task, unless the farm says otherwise.
 const CHUNK: u32 = 10;
 
-/// The template, with a name between @ signs for each value.
+/// The template, with a key between @ signs for each value.
 const TEMPLATE: &str = include_str!("../../assets/job_template.yaml");
 
-/// Why a job could not be written.
+/// The reason why a job could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
-    /// Not the template, or not the copy of the scene.
+    /// The template or the copy of the scene could not be written.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// The scene has no text.
+    /// The scene cannot be serialized.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The template has the name of the scene.
+    /// The template would have the name of the scene.
     #[error("{path} is the scene: give the job another name, such as {other}", path = .path.display(), other = .other.display())]
     IsScene {
         /// Where the template was to go.
@@ -37,29 +37,30 @@ pub enum JobError {
         /// Where it could go.
         other: PathBuf,
     },
-    /// The frames take more words than a job can hold.
+    /// The text of the frame set is longer than a job can hold.
     #[error(
         "the frames {0:.40}… are too many pieces for one job: make a job of each, or one of all frames"
     )]
     TooManyPieces(String),
 }
 
-/// Most characters of a value in a template, by its standard.
+/// Most characters of a value in a template, according to the standard.
 const LONGEST: usize = 1024;
 
-/// What [`write_job`] has written.
+/// The files that [`write_job`] has written.
 #[derive(Debug)]
 pub struct JobFiles {
     /// The scene that is rendered, beside the template.
     pub scene: PathBuf,
-    /// Whether that is a copy, of its own.
+    /// Whether that is a copy made for the job.
     pub is_copied: bool,
-    /// Files that held something else, and where that is kept.
+    /// Files that held something else, each with the path of its backup.
     pub replaced: Vec<(PathBuf, PathBuf)>,
 }
 
-/// Writes the template of a job to `path`, and the scene beside it, unless `file`, which holds this document, is
-/// there. A farm gets no other files: meshes that are files are taken in, in a copy of another name.
+/// Writes the template of a job to `path`, and the scene beside it, unless `file`, which holds this document, is that
+/// very file. A farm gets no other files: meshes in files of their own are stored in the scene, in a copy of another
+/// name.
 ///
 /// # Errors
 /// [`JobError`]: what could not be written.
@@ -83,7 +84,7 @@ pub fn write_job(
     if frames.len() > LONGEST {
         return Err(JobError::TooManyPieces(frames));
     }
-    // Nothing is moved out of the way of a template that cannot be written.
+    // Checked first, so that no file is moved to a backup for a template that cannot be written.
     check_place(path)?;
     let is_copied = !file.is_some_and(|file| is_same_file(file, &scene));
     let backup = if is_copied {
@@ -95,7 +96,7 @@ pub fn write_job(
         .map(|backup| (scene.clone(), backup))
         .into_iter()
         .collect();
-    // An older template of ours may go.
+    // An older template written by Glint is overwritten without a backup.
     if read_file(path).is_ok_and(|there| !is_template(&String::from_utf8_lossy(&there))) {
         let backup = back_up(path).map_err(|source| disk(path, source))?;
         replaced.push((path.to_owned(), backup));
@@ -108,15 +109,15 @@ pub fn write_job(
     })
 }
 
-/// Writes a document to `path`: as `file` has it, if it has one. Where what was there is now, if it was something
-/// else.
+/// Writes a document to `path`: the contents of `file` if that is given. Returns the path of the backup if something
+/// else was at `path`.
 fn write_scene(
     document: &Document,
     file: Option<&Path>,
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
     let disk = |source| disk(path, source);
-    // What comes through a pipe comes once.
+    // Regular files only: a pipe can be read only once.
     let text = if let Some(file) = file.filter(|file| file.is_file()) {
         fs::read(file).map_err(disk)?
     } else {
@@ -132,17 +133,18 @@ fn write_scene(
     Ok(backup)
 }
 
-/// What a job can be called after a scene of this name: two braces begin and end what is put in there.
+/// Returns a job name for a scene of this name. Double braces are broken up, as they delimit what the farm
+/// substitutes.
 fn job_name(scene: &str) -> String {
     let name = scene.replace("{{", "{ ").replace("}}", "} ");
     let plain = name.chars().filter(|letter| !letter.is_control());
     plain.take(LONGEST_NAME).collect()
 }
 
-/// Whether a text is the template with values of some scene, and nothing that was written by hand.
+/// Whether a text is the template with the values of some scene, and nothing written by hand.
 fn is_template(text: &str) -> bool {
     let template = TEMPLATE.replace("@CHUNK@", &CHUNK.to_string());
-    // What is not a key, between @ signs, is there as it is.
+    // All parts of the template between its keys must occur verbatim.
     let mut parts = template.split('@').step_by(2);
     let rest = parts.next().and_then(|first| text.strip_prefix(first));
     let rest = parts.try_fold(rest.unwrap_or_default(), |rest, part| {
@@ -152,10 +154,10 @@ fn is_template(text: &str) -> bool {
     rest == Some("")
 }
 
-/// The template: frames in chunks, then a video of all of them. The scene is an attached file, which
-/// lies beside the template under the name `scene`; `name` is what the job is called.
+/// Fills in the template: frames in chunks, then a video of all of them. The scene is an attached file, which lies
+/// beside the template under the name `scene`; `name` is the name of the job.
 fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
-    // A JSON text in quotation marks is a YAML one too.
+    // A JSON string is also a YAML string.
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
     let (width, height) = sequence.size();
     let values = [
@@ -176,7 +178,7 @@ fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
         });
         places.min_by_key(|(at, ..)| *at)
     };
-    // What was put in is not looked at again: a scene may be called anything.
+    // Inserted values are not searched for keys: a scene may have any name.
     let (mut text, mut rest) = (String::new(), TEMPLATE);
     while let Some((at, key, value)) = place_of(rest) {
         text.push_str(&rest[..at]);

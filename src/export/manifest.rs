@@ -1,4 +1,4 @@
-//! What is known about the frames in a folder: a text file with a line for each that was written.
+//! The manifest of a folder of frames: a text file with a line for each frame that was written.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -15,17 +15,17 @@ pub const MANIFEST: &str = "glint-frames.txt";
 const HEAD: &str =
     "# Frames by Glint: file, hash of its bytes, fingerprint of what it shows, milliseconds";
 
-/// What tells one content from another; 64 hexadecimal digits in the file.
+/// Hash of a file or of a scene; 64 hexadecimal digits in the manifest.
 pub type Hash = blake3::Hash;
 
-/// What was noted about a frame.
+/// The entry for a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Note {
     content: Hash,
     fingerprint: Hash,
 }
 
-/// The notes of a folder. The newest line about a file counts; a line that was cut off is none.
+/// The manifest of a folder. The last line about a file counts; truncated lines are ignored.
 #[derive(Debug)]
 pub struct Manifest {
     folder: PathBuf,
@@ -33,10 +33,10 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Reads the notes of a folder; none, if there are none.
+    /// Reads the manifest of a folder; without one, there are no entries.
     ///
     /// # Errors
-    /// Whatever the system answers, except that the file is not there.
+    /// Any error of the system but that the file does not exist.
     pub fn read(folder: &Path) -> io::Result<Self> {
         let path = folder.join(MANIFEST);
         let text = match read_file(&path) {
@@ -56,23 +56,23 @@ impl Manifest {
         })
     }
 
-    /// Whether the file was written, and something of its name is there.
+    /// Whether there is an entry for the file, and a file of that name exists.
     pub fn is_noted(&self, file: &str) -> bool {
         self.notes.contains_key(file) && self.folder.join(file).exists()
     }
 
-    /// Whether a file was written since, by these newer notes.
+    /// Whether a file has been written since, according to a newer manifest.
     pub fn is_other(&self, newer: &Self, file: &str) -> bool {
         self.notes.get(file) != newer.notes.get(file)
     }
 
-    /// Whether the file was written by somebody who shows something else in it.
+    /// Whether there is an entry for the file with another fingerprint.
     pub fn shows_other(&self, file: &str, fingerprint: &Hash) -> bool {
         let note = self.notes.get(file);
         note.is_some_and(|note| note.fingerprint != *fingerprint)
     }
 
-    /// Whether the file is there, whole, as it was written, and shows what it would show now.
+    /// Whether the file exists, is unchanged since it was written, and has this fingerprint.
     pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
         let Some(note) = self.notes.get(file) else {
             return false;
@@ -91,25 +91,25 @@ fn note(line: &str) -> Option<(String, Note)> {
         content: Hash::from_hex(content).ok()?,
         fingerprint: Hash::from_hex(fingerprint).ok()?,
     };
-    // The time is not read, but a line without it was cut off.
+    // The time is not used, but a line without it was truncated.
     cells.next().map(|_| (file.to_owned(), note))
 }
 
-/// The hash of a file, from where it is read next.
+/// Returns the hash of a file from its current position on.
 ///
 /// # Errors
-/// Whatever the system answers.
+/// Any error of the system.
 pub fn content_of(file: &File) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(file)?;
     Ok(hasher.finalize())
 }
 
-/// Adds a line about a file with this hash. Lines are added whole, so that several programs may write frames into
-/// one folder.
+/// Appends a line about a file with this hash. Lines are appended in one write, so that several programs may write
+/// frames into one folder.
 ///
 /// # Errors
-/// Whatever the system answers.
+/// Any error of the system.
 pub fn add_note(
     folder: &Path,
     file: &str,
@@ -126,9 +126,9 @@ pub fn add_note(
     manifest.write_all(line.as_bytes())
 }
 
-/// The notes, to add to, and what has to stand before the next line: the end of one that was cut off, so that it does
-/// not take the next one with it. The head is written by the one of all that write at the same time who makes the
-/// file.
+/// Opens the manifest for appending; returns it with what to write before the next line: the missing line break of a
+/// truncated line, which would spoil the next one. Of programs that write at the same time, the one that creates the
+/// file writes its head.
 fn open(path: &Path) -> io::Result<(File, String)> {
     let mut options = OpenOptions::new();
     options.append(true).read(true);

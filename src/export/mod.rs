@@ -1,4 +1,4 @@
-//! Pictures on disk: single ones, and sequences that can be taken up where they were left.
+//! Pictures on disk: single ones, and sequences whose export can be resumed.
 
 mod error;
 

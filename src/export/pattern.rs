@@ -1,17 +1,17 @@
-//! Names of frames: `rayTrace%d`, `shot.%05d`.
+//! File names of frames: `rayTrace%d`, `shot.%05d`.
 
 use crate::files::UNFINISHED;
 
-/// A file name with a place for the number.
+/// A file name with a placeholder for the frame number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     before: String,
-    /// The number is filled up with zeros to so many digits.
+    /// Least number of digits; shorter numbers are padded with zeros.
     digits: usize,
     after: String,
 }
 
-/// A text that names no frames.
+/// A text that is not a valid pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{why}, for example rayTrace%d or shot.%05d; found {found:?}")]
 pub struct PatternError {
@@ -20,8 +20,8 @@ pub struct PatternError {
 }
 
 impl Pattern {
-    /// Reads a pattern with one `%d`, or `%05d` for five digits; its width does not depend on how
-    /// many frames there are, so that names stay when more come.
+    /// Parses a pattern with one `%d`, or `%05d` for at least five digits. The width does not depend on the number of
+    /// frames, so that names stay the same when frames are added.
     ///
     /// # Errors
     /// [`PatternError`]: what was expected.
@@ -60,7 +60,7 @@ impl Pattern {
         })
     }
 
-    /// The name of a frame, without an ending.
+    /// The file name of a frame, without extension.
     pub fn name(&self, frame: u64) -> String {
         let Self {
             before,
@@ -80,7 +80,7 @@ impl Pattern {
     }
 }
 
-/// `05` or `5` or nothing.
+/// Parses the number of digits: `05` or `5` or nothing.
 fn digits_of(text: &str) -> Option<usize> {
     if text.is_empty() {
         return Some(0);

@@ -1,5 +1,5 @@
-//! Scenes in the language of POV-Ray, an independent engine that draws the same pictures, and what it makes of
-//! them.
+//! Export of scenes to the language of POV-Ray, an independent ray tracer that draws the same pictures, and rendering
+//! by it.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -23,19 +23,19 @@ use crate::scene::{
 };
 use crate::trace::RenderControl;
 
-/// The least of a colour that light is multiplied with: what is added to it has to be divided by it first.
+/// Least channel of a pigment: POV-Ray multiplies by the pigment, so what is added has to be divided by it first.
 const LEAST: f64 = 1e-6;
 
-/// Why POV-Ray has drawn no picture.
+/// The reason why POV-Ray has drawn no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PovrayError {
-    /// It is not there.
+    /// POV-Ray was not found.
     #[error(
         "POV-Ray is not installed, or not on the PATH: `apt install povray` on Debian and Ubuntu, `brew install povray` on macOS"
     )]
     Missing,
-    /// It was told to stop.
+    /// It was stopped.
     #[error("POV-Ray was stopped")]
     Stopped,
     /// It ended with an error.
@@ -49,7 +49,7 @@ pub enum PovrayError {
     Disk {
         /// The file.
         path: PathBuf,
-        /// What the system answered.
+        /// Error of the system.
         source: io::Error,
     },
     /// Its picture could not be read.
@@ -57,9 +57,9 @@ pub enum PovrayError {
     Picture(#[from] image::ImageError),
 }
 
-/// The scene in POV-Ray's language. A highlight has the light's colour there: what has highlights in another colour
-/// is lit by lights of its own, in that colour. Colours above white are cut off at the end there, and here at each
-/// mirror as well.
+/// Returns the scene in POV-Ray's language. POV-Ray's highlights have the colour of the light: objects whose
+/// highlights have another colour go into a light group with lights of that colour. POV-Ray clips colours above white
+/// once at the end; Glint also clips them at each mirror.
 pub fn povray_text(scene: &Scene) -> String {
     let mut pov = String::new();
     let level = scene.render.reflection_limit + 1;
@@ -111,7 +111,7 @@ pub fn povray_text(scene: &Scene) -> String {
     pov
 }
 
-/// How much of the light a highlight shows, and in which colour.
+/// Share of the light that a highlight reflects, and its colour.
 struct Highlight {
     share: f64,
     color: DVec3,
@@ -204,7 +204,7 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
         Shape::Mesh(mesh) => {
             let mut faces = String::new();
             write_faces(&mut faces, mesh);
-            // It knows no mesh without faces.
+            // POV-Ray accepts no mesh without faces.
             if faces.is_empty() {
                 return;
             }
@@ -213,7 +213,7 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
     };
 }
 
-/// The faces as the tracer has them: with the same normals where they are shaded as a curved surface.
+/// Writes the faces as the tracer has them: with the same normals if they are shaded smoothly.
 fn write_faces(pov: &mut String, mesh: &Mesh) {
     let packed = PackedMesh::new(mesh);
     let middle = packed.middle_of(mesh);
@@ -233,8 +233,8 @@ fn write_faces(pov: &mut String, mesh: &Mesh) {
 
 fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     let highlight = Highlight::of(pack);
-    // The light has the highlight's colour, and only the highlight is to have it. What a surface shows by itself
-    // is multiplied with its colour there.
+    // The lights have the colour of the highlight, and only the highlight is to have it, so the pigment is divided by
+    // it. POV-Ray multiplies ambient light by the pigment, so that is divided by the pigment.
     let pigment = pack.diffuse.max(DVec3::splat(LEAST * 255.0)) / highlight.color;
     let share = pack.ambient / pigment;
     let specular = highlight.share;
@@ -243,7 +243,7 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     } else {
         DVec3::ZERO
     };
-    // A sharpness of nought is as wide as a highlight can be.
+    // An exponent of 0 is as wide as a highlight can be.
     let roughness = 1.0 / pack.phong_exponent.max(LEAST);
     format!(
         "pigment {{ {} }} finish {{ ambient rgb {} diffuse 1 specular {specular:?} roughness {roughness:?} reflection {{ rgb {} }} }}",
@@ -253,11 +253,11 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     )
 }
 
-/// How large objects are that POV-Ray sees, in world units: of triangles 1e-6 or 1e7 large, it draws nothing.
+/// Sizes of objects that POV-Ray draws, in world units: of triangles of size 1e-6 or 1e7, it draws nothing.
 const SEEN: RangeInclusive<f64> = 1e-5..=1e6;
 
-/// In what the pictures of a scene differ, beyond rounding, for people: what the model means by it, and POV-Ray does
-/// not.
+/// Describes, for the user, how the pictures of a scene by Glint and by POV-Ray differ beyond rounding because their
+/// models differ.
 pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     let visible = || scene.visible_objects();
     let is_mirror = |object: &Object| {
@@ -298,16 +298,16 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
 pub struct ByPovray {
     /// The picture, one ray through the middle of each pixel.
     pub picture: Image,
-    /// How long it traced, by its own clock: without its start, and without reading the scene.
+    /// Tracing time by its own clock, without startup and parsing.
     pub time: Duration,
-    /// How many rays of all kinds it took.
+    /// Number of rays of all kinds, shadow rays included.
     pub rays: u64,
 }
 
-/// POV-Ray's clock counts these: what takes it no time took this long at most.
+/// Resolution of POV-Ray's clock: a time that it reports as 0 was at most this long.
 const TICK: Duration = Duration::from_millis(1);
 
-/// What POV-Ray tells of a picture when it is done: how long it traced, and how many rays that were.
+/// Parses POV-Ray's statistics: the tracing time and the number of rays.
 fn statistics(said: &str) -> Option<(Duration, u64)> {
     let after = |word: &str| said.split_once(word).map(|(_, rest)| rest.trim_start());
     let number = |word: &str| {
@@ -317,12 +317,12 @@ fn statistics(said: &str) -> Option<(Duration, u64)> {
     let seconds = after("Trace Time:")?.split_once('(')?.1;
     let seconds = seconds.split_once(" seconds)")?.0.parse().ok()?;
     let time = Duration::try_from_secs_f64(seconds).ok()?.max(TICK);
-    // Without lights there are no tests of shadows.
+    // Without lights there are no shadow tests.
     let shadows = number("Shadow Ray Tests:").unwrap_or(0);
     Some((time, number("Rays:")? + shadows))
 }
 
-/// Lets POV-Ray draw a scene, in a folder of its own that is gone afterwards, unless it is told to stop.
+/// Has POV-Ray draw a scene, in a temporary folder that is removed afterwards. `control` can stop it.
 ///
 /// # Errors
 /// [`PovrayError`].
@@ -340,7 +340,7 @@ pub fn by_povray(
     let folder = folder.path();
     let path = folder.join("scene.pov");
     std::fs::write(&path, povray_text(scene)).map_err(disk(&path))?;
-    // In a file, which no pipe fills up.
+    // To a file: a pipe could fill up and block it.
     let path = folder.join("said.txt");
     let said = File::create(&path).map_err(disk(&path))?;
     let Render { width, height, .. } = scene.render;

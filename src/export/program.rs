@@ -1,14 +1,14 @@
-//! Other programs that are waited for.
+//! Waiting for other programs.
 
 use std::io;
 use std::process::{Child, ExitStatus};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// How often it is asked whether a program is still wanted.
+/// Time between checks whether a program has ended or is no longer wanted.
 const TICK: Duration = Duration::from_millis(5);
 
-/// Waits until a program ends. `None` where nobody wants that any more: it is killed.
+/// Waits until a program ends. If `is_wanted` returns false before, the program is killed, and the result is `None`.
 pub fn end_of(
     program: &mut Child,
     mut is_wanted: impl FnMut() -> bool,

@@ -10,21 +10,21 @@ use super::error::ExportError;
 use crate::files::{NewFile, remove_leftovers, write_atomic};
 use crate::image::{Film, Format};
 
-/// Bytes of a file that go to the system at once.
+/// Size of the write buffer, in bytes.
 const BUFFER: usize = 1 << 18;
 
-/// Writes a picture in the format of the file's ending, whole or not at all.
+/// Writes a picture in the format of the file's extension, completely or not at all.
 ///
 /// # Errors
-/// [`ExportError`]; a file that was at `path` is then untouched.
+/// [`ExportError`]; an existing file at `path` is then untouched.
 pub fn save_image(film: &Film, path: &Path) -> Result<(), ExportError> {
     save_picture(path, |format, file| film.encode(format, file))
 }
 
-/// Writes what `encode` makes for the format of the file's ending, whole or not at all.
+/// Writes the output of `encode` for the format of the file's extension, completely or not at all.
 ///
 /// # Errors
-/// [`ExportError`]; a file that was at `path` is then untouched.
+/// [`ExportError`]; an existing file at `path` is then untouched.
 pub fn save_picture(
     path: &Path,
     encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<(), ImageError>,
@@ -34,7 +34,7 @@ pub fn save_picture(
     beside.place_durably().map_err(|source| disk(path, source))
 }
 
-/// Writes what `encode` makes beside its place.
+/// Writes the output of `encode` to a new file beside `path`, to be moved there.
 ///
 /// # Errors
 /// [`ExportError`].
@@ -56,8 +56,8 @@ pub fn write_beside(
     Ok(beside)
 }
 
-/// Whether a file could be written here: asked before what is to be in it is made. What killed programs have left
-/// beside it goes.
+/// Checks that a file can be written at `path`, before its contents are computed. Unfinished files that killed
+/// programs have left beside it are removed.
 ///
 /// # Errors
 /// [`ExportError::Disk`].
@@ -69,15 +69,15 @@ pub fn check_place(path: &Path) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// Writes a text file, whole or not at all.
+/// Writes a text file, completely or not at all.
 ///
 /// # Errors
-/// [`ExportError::Disk`]; a file that was at `path` is then untouched.
+/// [`ExportError::Disk`]; an existing file at `path` is then untouched.
 pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
     write_atomic(path, text.as_bytes()).map_err(|source| disk(path, source))
 }
 
-/// What the system has answered.
+/// The error for a failed write.
 pub fn disk(path: &Path, source: io::Error) -> ExportError {
     ExportError::Disk {
         path: path.to_owned(),

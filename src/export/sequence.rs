@@ -1,4 +1,4 @@
-//! An animation as files: which, where, and what each of them shows.
+//! An animation as a sequence of files: which frames, where, and what each of them shows.
 
 use std::fs::File;
 use std::io::{BufWriter, Seek as _};
@@ -20,55 +20,57 @@ use crate::image::Format;
 use crate::scene::{Method as _, Scene};
 use crate::words::counted;
 
-/// Most pixels of frames that are traced side by side, of those that are packed meanwhile, and of those that become a
-/// video: memory stays bounded, however large they are and however many threads there are.
+/// Most pixels of all frames that are traced at once; also of all that are being encoded meanwhile, and of all that
+/// are being made into a video. It bounds the memory, however large the frames are and however many threads there
+/// are.
 const MOST_PIXELS: usize = 1 << 26;
 
-/// What is said of a video of a [`Sequence`] that is a loop.
+/// The message about a video of a [`Sequence`] that is a loop.
 pub const LOOP_HINT: &str =
     "its last frame is the first again: it loops without a stop if that is left out";
 
-/// What is exported, and where to.
+/// The frames to export, and where to.
 #[derive(Clone, Debug)]
 pub struct Sequence {
     scene: Arc<Scene>,
     path: Arc<CameraPath>,
     /// The frames.
     pub frames: Frames,
-    /// Their names.
+    /// The pattern of their file names.
     pub pattern: Pattern,
-    /// Their format.
+    /// Their file format.
     pub format: Format,
-    /// Their folder.
+    /// The folder that they are written to.
     pub folder: PathBuf,
 }
 
-/// A frame behind the last.
+/// A frame beyond the last one was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no frame {frame}: the animation has {}", counted(*count, "frame"))]
 pub struct NoSuchFrame {
-    /// What was asked for.
+    /// The frame asked for.
     pub frame: u64,
-    /// How many there are.
+    /// The number of frames.
     pub count: u64,
 }
 
-/// Why there is no sequence.
+/// The reason why a sequence cannot be made.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SequenceError {
-    /// The animation is shorter.
+    /// A frame is beyond the end of the animation.
     #[error(transparent)]
     NoSuchFrame(#[from] NoSuchFrame),
-    /// All of its frames are too many.
+    /// All of the animation's frames are too many.
     #[error(transparent)]
     Frames(#[from] FramesError),
 }
 
 impl Sequence {
-    /// Frames of a scene; their size and how they are traced is what the scene's `render` says.
+    /// A sequence of frames of a scene, all of them if `frames` is `None`; size and sampling are those of the scene's
+    /// `render`.
     ///
     /// # Errors
-    /// [`SequenceError`], if the animation is shorter, or longer than one sequence can be.
+    /// [`SequenceError`], if a frame is beyond the end of the animation, or the animation has too many frames.
     pub fn new(
         scene: Arc<Scene>,
         frames: Option<Frames>,
@@ -91,8 +93,8 @@ impl Sequence {
         })
     }
 
-    /// Frames per second at which those that are exported play as fast as the animation: fewer where some
-    /// are left out.
+    /// The frame rate at which the exported frames play at the speed of the animation: lower if some frames are
+    /// skipped.
     pub fn frames_per_second(&self) -> f64 {
         let whole = self.scene.animation.frames_per_second;
         let (first, last) = (self.frames.iter().next(), self.frames.last());
@@ -108,43 +110,43 @@ impl Sequence {
         (self.scene.render.width, self.scene.render.height)
     }
 
-    /// How many frames of this size may be under way beside each other, of so many that are wanted.
+    /// The number of frames, of `wanted`, that may be processed at once with bounded memory.
     pub fn at_once(&self, wanted: usize) -> usize {
         let (width, height) = self.size();
         let pixels = (width as usize * height as usize).max(1);
         wanted.clamp(1, (MOST_PIXELS / pixels).max(1))
     }
 
-    /// How edges are smoothed, by its word.
+    /// The identifier of the antialiasing method.
     pub fn antialias(&self) -> String {
         self.scene.render.antialias.id()
     }
 
-    /// What a frame shows.
+    /// The scene that a frame shows.
     pub fn shown(&self, frame: u64) -> Arc<Scene> {
         shot(&self.scene, &self.path, self.scene.animation.time_of(frame))
     }
 
-    /// The file's name.
+    /// The file name of a frame.
     pub fn file(&self, frame: u64) -> String {
         format!("{}.{}", self.pattern.name(frame), self.format.ending())
     }
 
-    /// The file.
+    /// The path of a frame's file.
     pub fn path(&self, frame: u64) -> PathBuf {
         self.folder.join(self.file(frame))
     }
 
-    /// The frames that are not there as they should be, of those that are asked for.
+    /// The frames of the sequence that are missing or outdated.
     ///
     /// # Errors
-    /// [`ExportError`], if the folder's notes cannot be read.
+    /// [`ExportError`], if the folder's manifest cannot be read.
     pub fn missing(&self) -> Result<Frames, ExportError> {
         let manifest = self.manifest()?;
         self.frames.without(|frame| self.is_valid(&manifest, frame))
     }
 
-    /// Makes the folder if it is not there, and removes what killed programs have left unfinished there.
+    /// Makes the folder if it does not exist, and removes unfinished files that killed programs have left there.
     ///
     /// # Errors
     /// [`ExportError::Disk`].
@@ -154,7 +156,7 @@ impl Sequence {
         Ok(())
     }
 
-    /// Reads the notes of the folder.
+    /// Reads the manifest of the folder.
     ///
     /// # Errors
     /// [`ExportError::Unreadable`].
@@ -166,13 +168,13 @@ impl Sequence {
         })
     }
 
-    /// Whether a frame is there, whole, and shows what it would show now.
+    /// Whether a frame exists, is complete and up to date.
     ///
     /// # Errors
-    /// [`ExportError::Unwritable`], for a scene that has no text.
+    /// [`ExportError::Unwritable`], for a scene that cannot be serialized.
     pub fn is_valid(&self, manifest: &Manifest, frame: u64) -> Result<bool, ExportError> {
         let file = self.file(frame);
-        // What it shows takes a while to tell.
+        // Checked first, as computing the fingerprint takes a while.
         if !manifest.is_noted(&file) {
             return Ok(false);
         }
@@ -180,7 +182,8 @@ impl Sequence {
         Ok(manifest.is_valid(&file, &fingerprint))
     }
 
-    /// Whether the last frame shows what the first does: played over and over, that stands still for a frame.
+    /// Whether the last frame shows the same as the first: played in a loop, the picture would then stand still for a
+    /// frame.
     pub fn is_loop(&self) -> bool {
         let (Some(first), Some(last)) = (self.frames.iter().next(), self.frames.last()) else {
             return false;
@@ -197,12 +200,12 @@ impl Sequence {
         print(&first).is_some_and(|first| print(&last) == Some(first))
     }
 
-    /// Writes a frame: what `encode` makes, which says how long it took to trace, goes beside its place first, then under
-    /// its name, then into the notes. It is not forced to the disk, which would cost more than tracing it: after a power
-    /// cut its hash tells.
+    /// Writes a frame: the output of `encode`, which returns how long the frame took to trace, goes to a new file,
+    /// which then gets the frame's name and an entry in the manifest. It is not forced to the disk, which would cost
+    /// more than tracing it: after a power cut, its hash shows whether it is whole.
     ///
     /// # Errors
-    /// [`ExportError`]; a file that was there is then untouched.
+    /// [`ExportError`]; an existing file is then untouched.
     pub fn write(
         &self,
         frame: u64,
@@ -215,7 +218,7 @@ impl Sequence {
             time = encode(file)?;
             Ok(())
         })?;
-        // Through the file that is open: some systems let nobody else read one that is locked.
+        // Read through the open file: on some systems, a locked file cannot be read otherwise.
         let mut file = beside.as_file();
         let content = file.rewind().and_then(|()| content_of(file));
         let placed = content.and_then(|content| beside.place().map(|()| content));

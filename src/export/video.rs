@@ -1,4 +1,4 @@
-//! One file that moves, made of frames that are there: by ffmpeg, or as GIF or APNG without it.
+//! Videos made of exported frames: by ffmpeg, or as GIF or APNG without it.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -11,14 +11,14 @@ use super::sequence::Sequence;
 use crate::files::NewFile;
 use crate::image::Image;
 
-/// What ffmpeg is told about the codec: both sides even, as H.264 needs them. How red, green and blue become what these
-/// hold is said in the file: players guess by the size otherwise.
+/// Codec arguments for ffmpeg. Both sides are made even, as H.264 needs. The conversion from RGB is recorded in the
+/// file: players would otherwise guess it from the size.
 const H264: &str = "-c:v libx264 -crf 25 -vf scale=trunc(iw/2)*2:trunc(ih/2)*2:out_color_matrix=bt709:out_range=tv,format=yuv420p,setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv -movflags +faststart";
 const PRORES: &str = "-c:v prores_ks -profile:v 4444 -vf scale=out_color_matrix=bt709:out_range=tv,format=yuv444p10le,setparams=color_primaries=bt709:color_trc=bt709:colorspace=bt709:range=tv";
-/// Exact to the bit: without the number drawn by lot that tells one file from another.
+/// Reproducible to the bit: without the random number that tells files apart.
 const LOSSLESS: &str = "-c:v ffv1 -level 3 -pix_fmt bgr0 -fflags +bitexact";
 
-/// How a video is encoded; its ending says.
+/// A video format, chosen by the file extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Video {
     /// H.264 in MP4, by ffmpeg, with the settings of the original program.
@@ -34,7 +34,7 @@ pub enum Video {
 }
 
 impl Video {
-    /// All of them, as they are offered.
+    /// All formats, in the order in which they are offered.
     pub const ALL: [Self; 5] = [
         Self::H264,
         Self::ProRes,
@@ -43,7 +43,7 @@ impl Video {
         Self::Apng,
     ];
 
-    /// The ending of such files.
+    /// The extension of such files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::H264 => "mp4",
@@ -54,18 +54,18 @@ impl Video {
         }
     }
 
-    /// Whether it takes another program.
+    /// Whether making it needs ffmpeg.
     pub fn needs_ffmpeg(self) -> bool {
         !matches!(self, Self::Gif | Self::Apng)
     }
 
-    /// The kind whose files end so.
+    /// The format with this extension, in any case.
     pub fn of_ending(ending: &str) -> Option<Self> {
         let is_it = |video: &Self| ending.eq_ignore_ascii_case(video.ending());
         Self::ALL.into_iter().find(is_it)
     }
 
-    /// The kind that a file's ending asks for.
+    /// The format for a file's extension.
     ///
     /// # Errors
     /// [`VideoError::Unknown`].
@@ -75,17 +75,17 @@ impl Video {
         video.ok_or_else(|| VideoError::Unknown(path.display().to_string()))
     }
 
-    /// About how long so many threads make it of frames like this picture; `None` where another program does, or where
-    /// that is little beside tracing them.
+    /// Estimates how long `threads` threads take to make it of frames like `image`; `None` if ffmpeg makes it, or if
+    /// that takes little time compared to tracing.
     pub fn forecast(self, sequence: &Sequence, image: &Image, threads: usize) -> Option<Duration> {
         (self == Self::Gif).then(|| time_of_gif(sequence, image, threads))
     }
 
-    /// Makes a video of the frames of a sequence, all of which must be there, and puts it in place
-    /// when it is whole. `go_on` is told how many frames are in it, and says whether more are wanted.
+    /// Makes a video of the frames of a sequence, all of which must exist, and puts it in place once it is complete.
+    /// `go_on` is told how many frames are in it, and returns whether to continue.
     ///
     /// # Errors
-    /// [`VideoError`]; a file that was there is then untouched.
+    /// [`VideoError`]; an existing file is then untouched.
     pub fn make(
         self,
         sequence: &Sequence,
@@ -102,11 +102,11 @@ impl Video {
             Self::ProRes => by_ffmpeg(sequence, lent(), PRORES, &mut go_on)?,
             Self::Lossless => by_ffmpeg(sequence, lent(), LOSSLESS, &mut go_on)?,
         }
-        // It may have been given up in the last moment.
+        // It may have been cancelled at the last moment.
         if !go_on(sequence.frames.count()) {
             return Err(VideoError::Stopped);
         }
-        // Another export may have put frames of its own in the place of some while they were read.
+        // Another export may have replaced some frames while they were read.
         let after = sequence.manifest()?;
         let mut changed = sequence.frames.iter().filter(|frame| {
             let file = sequence.file(*frame);
@@ -120,10 +120,10 @@ impl Video {
         placed.map_err(|error| VideoError::disk(path, &error))
     }
 
-    /// What a video shows otherwise than the frames of a sequence, in a sentence.
+    /// Describes in a sentence how a video will differ from the frames of a sequence, if it does.
     ///
     /// # Errors
-    /// [`VideoError::Unfit`] where it cannot show them.
+    /// [`VideoError::Unfit`] if it cannot show them.
     pub fn check(self, sequence: &Sequence) -> Result<Option<String>, VideoError> {
         let (width, height) = sequence.size();
         let (fps, count) = (sequence.frames_per_second(), sequence.frames.count());
@@ -164,7 +164,7 @@ impl Video {
         }
     }
 
-    /// How many of the frames of a sequence it shows.
+    /// The number of frames of a sequence that it shows.
     pub fn frames_of(self, sequence: &Sequence) -> usize {
         let count = sequence.frames.count();
         match self {

@@ -1,4 +1,4 @@
-//! The threads that pack frames and write them, while others are traced.
+//! The threads that encode and write frames while others are traced.
 
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,37 +10,37 @@ use super::save::disk;
 use super::sequence::Sequence;
 use crate::image::Film;
 
-/// A picture on its way to the disk.
+/// A traced frame to be written.
 pub struct WriteJob {
     /// The frame.
     pub frame: u64,
-    /// What it shows.
+    /// Its pixels.
     pub film: Film,
-    /// What decides that.
+    /// The fingerprint of what it shows.
     pub fingerprint: Hash,
     /// How long it took to trace.
     pub time: Duration,
 }
 
-/// What came of it, and the memory back.
+/// The outcome for a frame, with its memory to be reused.
 pub struct WriteResult {
-    /// Why it is not on the disk, if it is not.
+    /// The error if it could not be written.
     pub written: Result<(), ExportError>,
-    /// The memory.
+    /// The memory of the frame.
     pub film: Film,
 }
 
-/// The threads. They end when this is dropped and what they were given is written.
+/// Handle to the writer threads. They end when it is dropped and all jobs are written.
 pub struct Writers {
     jobs: SyncSender<WriteJob>,
     results: Receiver<WriteResult>,
 }
 
 impl Writers {
-    /// Starts so many.
+    /// Starts `count` threads.
     ///
     /// # Errors
-    /// [`ExportError::Disk`] when the system refuses a thread.
+    /// [`ExportError::Disk`], if the system refuses a thread.
     pub fn start(sequence: &Arc<Sequence>, count: usize) -> Result<Self, ExportError> {
         let (jobs, to_write) = sync_channel::<WriteJob>(1);
         let (to_return, results) = channel();
@@ -56,24 +56,24 @@ impl Writers {
         Ok(Self { jobs, results })
     }
 
-    /// Gives them a picture, once there is room for it; `false` if none of them is left.
+    /// Hands a job to the threads, waiting for room; `false` if none of them is left.
     pub fn write(&self, job: WriteJob) -> bool {
         self.jobs.send(job).is_ok()
     }
 
-    /// What came of a picture, if one of them has told.
+    /// The next result, if one has arrived.
     pub fn result(&self) -> Option<WriteResult> {
         self.results.try_recv().ok()
     }
 
-    /// Waits for all that they were given.
+    /// The results of all remaining jobs, waiting for each.
     pub fn finish(self) -> impl Iterator<Item = WriteResult> {
         drop(self.jobs);
         self.results.into_iter()
     }
 }
 
-/// Writes what arrives; hangs up after a picture that could not be written.
+/// Writes the jobs that arrive; ends after a picture that could not be written.
 fn write_all(sequence: &Sequence, jobs: &Mutex<Receiver<WriteJob>>, results: &Sender<WriteResult>) {
     let next = || {
         let jobs = jobs.lock().unwrap_or_else(PoisonError::into_inner);

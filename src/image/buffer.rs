@@ -1,17 +1,17 @@
-//! The picture: 8-bit pixels, and what light becomes in them.
+//! Pixel buffers, of 8 bits or of linear light, and the conversion to 8 bits.
 
 use image::RgbaImage;
 
 use crate::simd::Real;
 use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
-/// An 8-bit picture: RGBA. Alpha is 255 where it was traced and says nothing else.
+/// An 8-bit picture: RGBA. Alpha is 255 where the pixel was traced; it has no other meaning.
 pub type Image = Raster<[u8; 4]>;
 
-/// A picture of the light itself.
+/// A picture of linear light.
 pub type LinearImage = Raster<LinearRgb>;
 
-/// Linear red, green and blue, 0–1, before they become 8 bits.
+/// Linear red, green and blue, 0–1, before the conversion to 8 bits.
 pub type LinearRgb = [f32; 3];
 
 /// A picture, row by row from the top.
@@ -26,8 +26,8 @@ pub struct Raster<P> {
 }
 
 impl<P: Copy + Default> Raster<P> {
-    /// A picture of which nothing is traced yet. The system hands out zeroed memory page by page as
-    /// it is first touched, so that this costs the tracing threads and not the caller.
+    /// A picture of which nothing is traced yet. The system provides zeroed pages of memory as they are first
+    /// touched, so the tracing threads bear that cost and not the caller.
     pub fn new(width: usize, height: usize) -> Self {
         Self {
             width,
@@ -36,15 +36,14 @@ impl<P: Copy + Default> Raster<P> {
         }
     }
 
-    /// Makes room for another size. What the pixels show afterwards means nothing; memory that is
-    /// there is kept, which saves the system handing out every page anew.
+    /// Changes the size. The pixels are unspecified afterwards; the memory is kept, so that the system need not
+    /// provide every page anew.
     pub fn resize(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
         self.pixels.resize(width * height, P::default());
     }
 
-    /// The picture that a pass with this step has filled: every `step`-th pixel of every
-    /// `step`-th row.
+    /// The thinned picture that a pass with this step has filled: every `step`-th pixel of every `step`-th row.
     #[must_use]
     pub fn decimated(&self, step: usize) -> Self {
         let rows = self.pixels.chunks(self.width.max(1)).step_by(step);
@@ -59,14 +58,14 @@ impl<P: Copy + Default> Raster<P> {
     }
 }
 
-// Not for any pixel: the tracer's kernels are compiled here, once, and not by everyone who calls them.
+// Not generic over the pixel, so that the tracer's kernels are compiled once here and not by every caller.
 impl Image {
-    /// Traces the pixels of `pass`; `None` if `control` said stop.
+    /// Traces the pixels of `pass`; `None` if `control` was stopped.
     pub fn trace(&mut self, tracer: &Tracer, pass: Pass, control: &RenderControl) -> Option<Rays> {
         tracer.pass(&mut self.pixels, pass, control)
     }
 
-    /// The light that the levels stand for, 0–1.
+    /// The linear light that the levels stand for, 0–1.
     pub fn to_linear(&self) -> LinearImage {
         let pixels = self.pixels.iter();
         let share = |level: u8| f32::from(level) / 255.0;
@@ -89,7 +88,7 @@ impl From<&RgbaImage> for Image {
 }
 
 impl LinearImage {
-    /// The same in 8 bits.
+    /// The picture in 8 bits.
     pub fn to_levels(&self) -> Image {
         let pixels = self.pixels.iter();
         Image {
@@ -109,12 +108,12 @@ impl Pixel for LinearRgb {
 impl Pixel for [u8; 4] {
     #[inline(always)]
     fn of<R: Real>(red: R, green: R, blue: R) -> Self {
-        // One number, so that the compiler can do many pixels in step.
+        // One integer, so that the compiler can vectorize over pixels.
         (level(red) | level(green) << 8 | level(blue) << 16 | 0xFF << 24).to_le_bytes()
     }
 }
 
-/// Linear 0–1 to 0–255, rounded to nearest; there is no gamma in the model. NaN is 0.
+/// Converts linear 0–1 to 0–255, rounded to nearest; the model has no gamma. NaN becomes 0.
 #[inline(always)]
 fn level<R: Real>(channel: R) -> u32 {
     (channel.max(R::ZERO).min(R::ONE) * R::from_f64(255.0)).nearest()

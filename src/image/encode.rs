@@ -26,7 +26,7 @@ pub enum Format {
     Exr,
 }
 
-/// A file name that says no known format.
+/// A file name whose extension is not that of a known format.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error("{name:?} ends in no known picture format; end it in .png, .ppm or .exr")]
 pub struct FormatError {
@@ -37,7 +37,7 @@ impl Format {
     /// Every format.
     pub const ALL: [Self; 3] = [Self::Ppm, Self::Png, Self::Exr];
 
-    /// The ending of such files.
+    /// The extension of such files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Png => "png",
@@ -46,16 +46,16 @@ impl Format {
         }
     }
 
-    /// The format with this ending, in any case.
+    /// The format with this extension, in upper or lower case.
     pub fn of_ending(ending: &str) -> Option<Self> {
         let is_it = |format: &Self| ending.eq_ignore_ascii_case(format.ending());
         Self::ALL.into_iter().find(is_it)
     }
 
-    /// The format that a file's ending asks for.
+    /// The format for a file's extension.
     ///
     /// # Errors
-    /// [`FormatError`] for any ending but `.png`, `.ppm` and `.exr`.
+    /// [`FormatError`] for any extension but `.png`, `.ppm` and `.exr`.
     pub fn of_path(path: &Path) -> Result<Self, FormatError> {
         let ending = path.extension().and_then(OsStr::to_str);
         ending.and_then(Self::of_ending).ok_or_else(|| FormatError {
@@ -64,10 +64,10 @@ impl Format {
     }
 }
 
-/// Writes light as an EXR file.
+/// Writes linear light as an EXR file.
 ///
 /// # Errors
-/// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
+/// Errors of the encoder or of the system; [`io::ErrorKind::Interrupted`] if the picture is no longer wanted.
 pub fn write_light(
     rows: &mut (impl Rows<LinearRgb> + Send),
     file: &mut (impl Write + Seek),
@@ -94,10 +94,11 @@ pub fn write_light(
     }
 }
 
-/// Writes levels as a PNG or PPM file, without alpha.
+/// Writes 8-bit levels as a PNG or PPM file, without alpha.
 ///
 /// # Errors
-/// What the encoder says, or the system; that the format holds light; [`io::ErrorKind::Interrupted`] once nobody wants the picture any more.
+/// Errors of the encoder or of the system; an error for EXR, which holds linear light; [`io::ErrorKind::Interrupted`]
+/// if the picture is no longer wanted.
 pub fn write_levels(
     rows: &mut impl Rows<[u8; 4]>,
     format: Format,
@@ -118,7 +119,7 @@ pub fn write_levels(
     Ok(())
 }
 
-/// Fast rather than small, as pictures are written while the next one is traced.
+/// Favours speed over size, as pictures are written while the next one is traced.
 fn write_png(
     rows: &mut impl Rows<[u8; 4]>,
     file: &mut impl Write,
@@ -148,26 +149,26 @@ fn write_rows(rows: &mut impl Rows<[u8; 4]>, file: &mut impl Write) -> io::Resul
     Ok(())
 }
 
-/// Sides are far below what is cut off here.
+/// Converts a side to 32 bits; none comes close to the limit.
 fn short(side: usize) -> u32 {
     u32::try_from(side).unwrap_or(u32::MAX)
 }
 
 impl LinearImage {
-    /// Writes it as an EXR file.
+    /// Writes the picture as an EXR file.
     ///
     /// # Errors
-    /// What the encoder says, or the system.
+    /// Errors of the encoder or of the system.
     pub fn encode(&self, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         write_light(&mut &*self, file)
     }
 }
 
 impl Image {
-    /// Writes it as a file in this format, without alpha, row by row.
+    /// Writes the picture in this format, without alpha, row by row.
     ///
     /// # Errors
-    /// What the encoder says, or the system.
+    /// Errors of the encoder or of the system.
     pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match format {
             Format::Png | Format::Ppm => write_levels(&mut &*self, format, file),

@@ -1,4 +1,4 @@
-//! What a picture is traced onto before it becomes a file: as precise as the file can be.
+//! The buffer that a picture is traced into before it becomes a file: as precise as the file format.
 
 use std::borrow::Cow;
 use std::io::{Seek, Write};
@@ -13,17 +13,17 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::RenderControl;
 
-/// A picture for a file.
+/// A picture for a file, in 8 bits or in linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Film {
-    /// For formats of 8 bits.
+    /// For 8-bit formats.
     Levels(Image),
-    /// For those that hold the light itself.
+    /// For formats that hold linear light.
     Linear(LinearImage),
 }
 
 impl Film {
-    /// An empty one for this format.
+    /// An empty film for this format.
     pub fn new(format: Format) -> Self {
         match format {
             Format::Png | Format::Ppm => Self::Levels(Image::default()),
@@ -31,7 +31,7 @@ impl Film {
         }
     }
 
-    /// Traces a whole picture over what was there, see [`render_into`]; `None` if `control` said stop.
+    /// Traces a whole picture into the film, see [`render_into`]; `None` if `control` was stopped.
     pub fn expose(
         &mut self,
         planner: &mut Planner,
@@ -45,8 +45,8 @@ impl Film {
         }
     }
 
-    /// Begins a picture that is traced strip by strip while it is written, in the memory of the film: what that shows
-    /// afterwards means nothing.
+    /// Begins a picture that is traced strip by strip while it is written, in the memory of the film, whose contents
+    /// are unspecified afterwards.
     pub fn draw<'a>(
         &'a mut self,
         planner: &mut Planner,
@@ -79,7 +79,7 @@ impl Film {
         }
     }
 
-    /// What a screen shows of it.
+    /// The picture in 8 bits, as a screen shows it.
     pub fn levels(&self) -> Cow<'_, Image> {
         match self {
             Self::Levels(image) => Cow::Borrowed(image),
@@ -87,7 +87,7 @@ impl Film {
         }
     }
 
-    /// The same, and nothing more of it.
+    /// Converts the film into the picture in 8 bits.
     pub fn into_levels(self) -> Image {
         match self {
             Self::Levels(image) => image,
@@ -95,10 +95,10 @@ impl Film {
         }
     }
 
-    /// Writes it as a file in this format.
+    /// Writes the picture as a file in this format.
     ///
     /// # Errors
-    /// What the encoder says, or the system.
+    /// Errors of the encoder or of the system.
     pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match (self, format) {
             (Self::Linear(image), Format::Exr) => image.encode(file),

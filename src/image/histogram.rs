@@ -1,19 +1,19 @@
-//! How often each brightness is in a picture.
+//! Histograms of pictures.
 
 use super::buffer::Image;
 
-/// Counts of the levels of each channel.
+/// Counts of the levels of each channel, and the share of clipped pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
-    /// For red, green and blue, how many pixels have each level.
+    /// Number of pixels by level, for red, green and blue.
     pub counts: [[u32; 256]; 3],
-    /// Share of the pixels with a channel at its brightest, but for those that show nothing but the
-    /// background, 0–1.
+    /// Share of the traced pixels with a channel at its maximum, 0–1. Pixels of exactly the background colour do not
+    /// count as clipped.
     pub clipped: f64,
 }
 
 impl Histogram {
-    /// Counts the pixels of a picture that are traced; `background` is what shows nothing.
+    /// Counts the traced pixels of a picture; `background` is the colour of pixels that show nothing.
     pub fn of(image: &Image, background: [u8; 3]) -> Self {
         let mut counts = [[0; 256]; 3];
         let (mut clipped, mut traced) = (0_u64, 0_u64);
@@ -34,7 +34,7 @@ impl Histogram {
         }
     }
 
-    /// The most that any level but the darkest and the brightest has.
+    /// The largest count of any level but the darkest and the brightest.
     pub fn highest(&self) -> u32 {
         let inner = self.counts.iter().flat_map(|counts| &counts[1..255]);
         inner.copied().max().unwrap_or(0)

@@ -1,4 +1,4 @@
-//! What happens to a pixel once its light is known: the buffer, 8-bit conversion, file formats.
+//! Pictures: from a scene to pixels, conversion of light to 8 bits, file formats.
 
 mod buffer;
 

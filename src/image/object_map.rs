@@ -1,5 +1,5 @@
-//! Which object is seen at each pixel: a picture of the scene by the same tracer, in which every colour is a
-//! number.
+//! Object maps: which object is visible at each pixel. The scene is rendered by the same tracer, with a colour for
+//! each object that encodes its number.
 
 use glam::DVec3;
 use indexmap::IndexMap;
@@ -10,7 +10,7 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{ColorPack, Light, LightObj, List, Object, Sampling, Scene};
 use crate::trace::RenderControl;
 
-/// Something that a pixel can show, by its place in the scene's list.
+/// Something that a pixel can show, by index in the scene's list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Thing {
     /// The marker of a light.
@@ -19,7 +19,7 @@ pub enum Thing {
     Object(usize),
 }
 
-/// What is seen at the centre of each pixel of a picture.
+/// What is visible at the centre of each pixel of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct ObjectMap {
     image: Image,
@@ -37,7 +37,7 @@ impl ObjectMap {
         self.image.height
     }
 
-    /// What is seen at a pixel; `None` for the sky, and outside the picture.
+    /// What is visible at a pixel; `None` for the sky and outside the picture.
     pub fn at(&self, column: usize, row: usize) -> Option<Thing> {
         if column >= self.image.width {
             return None;
@@ -46,7 +46,7 @@ impl ObjectMap {
         self.thing(*pixel)
     }
 
-    /// What is seen in a row, pixel by pixel; nothing outside the picture.
+    /// What is visible in a row, pixel by pixel; empty outside the picture.
     pub fn row(&self, row: usize) -> impl Iterator<Item = Option<Thing>> {
         let width = self.image.width;
         let pixels = self.image.pixels.get(row * width..(row + 1) * width);
@@ -64,14 +64,14 @@ impl ObjectMap {
     }
 }
 
-/// Makes maps of objects; what one needs as well as the one before is not made again.
+/// Makes object maps; what consecutive maps have in common is reused.
 #[derive(Debug, Default)]
 pub struct ObjectMapper {
     planner: Planner,
     last: Option<Numbered>,
 }
 
-/// A numbered scene, and what it was made of.
+/// A scene in numbered colours, and what it was made from.
 #[derive(Debug)]
 struct Numbered {
     objects: List<Object>,
@@ -81,9 +81,8 @@ struct Numbered {
 }
 
 impl ObjectMapper {
-    /// The map of the picture `request` of a scene, which must pass [`crate::scene::check`], as if nothing
-    /// of `without` were there. Meshes that `planner` knows are not made ready again. `None` if `control`
-    /// said stop.
+    /// Makes the map for the picture `request` of a scene, which must pass [`crate::scene::check`], with the things
+    /// in `without` left out. Meshes that `planner` has prepared are reused. `None` if `control` was stopped.
     pub fn map(
         &mut self,
         scene: &Scene,
@@ -126,7 +125,7 @@ impl ObjectMapper {
     }
 }
 
-/// The scene without light, each of its things in the colour of its number from 1 on, lights first.
+/// Returns the scene without lighting, each thing in the colour of its number; numbers start at 1, with lights first.
 fn numbered(scene: &Scene, without: &[Thing]) -> Scene {
     let is_there = |thing: Thing| !without.contains(&thing);
     let lights = scene.lights.iter().enumerate().map(|(index, light)| Light {
@@ -161,7 +160,7 @@ fn numbered(scene: &Scene, without: &[Thing]) -> Scene {
     numbered
 }
 
-/// A pack that is seen in the colour of a number below 2²⁴.
+/// A color pack whose visible colour encodes a number below 2²⁴.
 fn pack(number: usize) -> ColorPack {
     let [low, middle, high, ..] = (number as u32).to_le_bytes().map(f64::from);
     ColorPack {
@@ -184,7 +183,7 @@ mod tests {
         map.expect("nobody stops it")
     }
 
-    /// Where the object in this place is seen: it alone is white, and nothing shines.
+    /// A picture in which only the object at this index is white, and nothing is lit.
     fn silhouette(scene: &Scene, object: usize) -> Image {
         let mut scene = scene.clone();
         for light in scene.lights.iter_mut() {

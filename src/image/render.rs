@@ -1,4 +1,4 @@
-//! From a scene to a picture: the one way.
+//! Rendering: the only way from a scene to a picture.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{Pass, Pixel, Rays, RenderControl, Tracer};
 
-/// What a picture cost.
+/// The cost of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderCost {
-    /// Wall time, planning included and pauses not.
+    /// Wall time, including planning but not pauses.
     pub time: Duration,
     /// Rays traced.
     pub rays: Rays,
@@ -18,8 +18,8 @@ pub struct RenderCost {
     pub lanes: String,
 }
 
-/// Traces a whole picture on the current rayon pool: the one way from a scene to pixels.
-/// `None` if `control` said stop.
+/// Traces a whole picture on the current rayon pool: the only way from a scene to pixels. `None` if `control` was
+/// stopped.
 pub fn render(
     scene: &Scene,
     request: &RenderRequest,
@@ -30,7 +30,7 @@ pub fn render(
     Some((image, cost))
 }
 
-/// [`render`] over an older picture, whose memory it takes, with what was planned for it.
+/// Like [`render`], but reuses the memory of an older picture, and what `planner` has prepared.
 pub fn render_into(
     image: &mut Image,
     planner: &mut Planner,
@@ -41,7 +41,7 @@ pub fn render_into(
     render_pixels(image, planner, scene, request, control)
 }
 
-/// [`render_into`] for the light itself.
+/// Like [`render_into`], for linear light.
 pub fn render_light_into(
     image: &mut LinearImage,
     planner: &mut Planner,
@@ -52,7 +52,7 @@ pub fn render_light_into(
     render_pixels(image, planner, scene, request, control)
 }
 
-// Not public: the tracer's kernels are compiled here, once, and not by everyone who calls them.
+// Not public, so that the tracer's kernels are compiled once here and not by every caller.
 fn render_pixels<P: Pixel + Copy + Default>(
     image: &mut Raster<P>,
     planner: &mut Planner,

@@ -1,15 +1,15 @@
-//! Pictures row by row, for encoders that look at no more of them at a time.
+//! Pictures accessed row by row, for encoders that need no more at a time.
 
 use std::io;
 
 use super::buffer::Raster;
 
-/// A picture whose rows are looked at from the top.
+/// A picture whose rows are read from the top.
 pub trait Rows<P> {
     /// Width and height in pixels.
     fn size(&self) -> (usize, usize);
 
-    /// The pixels of a row; `None` once nobody wants the picture any more.
+    /// The pixels of a row; `None` if the picture is no longer wanted.
     fn row(&mut self, row: usize) -> Option<&[P]>;
 }
 
@@ -24,7 +24,7 @@ impl<P> Rows<P> for &Raster<P> {
     }
 }
 
-/// What to say where no row comes.
+/// The error if a row is missing because the picture is no longer wanted.
 pub fn unwanted() -> io::Error {
     io::Error::new(
         io::ErrorKind::Interrupted,

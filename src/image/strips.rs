@@ -1,4 +1,4 @@
-//! Pictures that are traced while they are written: as large as the disk has room for, not the memory.
+//! Pictures traced strip by strip while they are written: their size is limited by the disk, not by memory.
 
 use std::io::{self, Seek, Write};
 use std::ops::Range;
@@ -14,23 +14,23 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::{Pixel, Rays, RenderControl, Tracer};
 
-/// A picture that is traced when its rows are asked for, of which no more than a strip is there.
+/// A picture whose rows are traced on demand; only one strip is in memory.
 #[derive(Debug)]
 pub struct Strips<'a, P> {
     tracer: Tracer,
     control: &'a RenderControl,
-    /// How many rows are traced at once.
+    /// Number of rows of a strip.
     step: usize,
-    /// The pixels that are there.
+    /// The pixels of the current strip.
     strip: &'a mut Vec<P>,
-    /// The rows that they are of.
+    /// The rows of the current strip.
     rows: Range<usize>,
     time: Duration,
     rays: Rays,
 }
 
 impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
-    /// Plans a picture, to be traced into this memory until `control` says stop.
+    /// Plans a picture, to be traced into this memory unless `control` is stopped.
     pub fn new(
         strip: &'a mut Vec<P>,
         planner: &mut Planner,
@@ -50,7 +50,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
         }
     }
 
-    /// Traces the next strip, if there is one.
+    /// Traces the next strip, if any.
     fn go_on(&mut self) -> io::Result<()> {
         if self.rows.end < self.tracer.height() {
             self.trace(self.rows.end).ok_or_else(unwanted)?;
@@ -58,7 +58,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
         Ok(())
     }
 
-    /// Traces what comes after the rows that are there.
+    /// Traces all remaining strips.
     fn finish(&mut self) -> io::Result<()> {
         while self.rows.end < self.tracer.height() {
             self.go_on()?;
@@ -66,7 +66,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
         Ok(())
     }
 
-    /// What it has cost, without what was done with it.
+    /// The cost of tracing, without the use of the pixels.
     fn cost(self) -> RenderCost {
         RenderCost {
             time: self.time,
@@ -88,21 +88,21 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
     }
 }
 
-/// A picture that is traced strip by strip for a file.
+/// A picture that is traced strip by strip for a file, in 8 bits or in linear light.
 #[derive(Debug)]
 pub enum Drawing<'a> {
-    /// For formats of 8 bits.
+    /// For 8-bit formats.
     Levels(Strips<'a, [u8; 4]>),
-    /// For those that hold the light itself.
+    /// For formats that hold linear light.
     Linear(Strips<'a, LinearRgb>),
 }
 
 impl Drawing<'_> {
-    /// Traces the first strip: a picture that is no larger is there before its file is begun, which who is killed
-    /// meanwhile would leave.
+    /// Traces the first strip. A picture of a single strip is then complete before its file is begun, so that killing
+    /// the program during the tracing leaves no unfinished file.
     ///
     /// # Errors
-    /// [`io::ErrorKind::Interrupted`] if `control` said stop.
+    /// [`io::ErrorKind::Interrupted`] if `control` was stopped.
     pub fn start(&mut self) -> io::Result<()> {
         match self {
             Self::Levels(strips) => strips.go_on(),
@@ -110,10 +110,10 @@ impl Drawing<'_> {
         }
     }
 
-    /// Traces what is left, for nobody.
+    /// Traces what is left, without using it.
     ///
     /// # Errors
-    /// [`io::ErrorKind::Interrupted`] if `control` said stop.
+    /// [`io::ErrorKind::Interrupted`] if `control` was stopped.
     pub fn finish(&mut self) -> io::Result<()> {
         match self {
             Self::Levels(strips) => strips.finish(),
@@ -121,10 +121,10 @@ impl Drawing<'_> {
         }
     }
 
-    /// Traces what is left while all of it is written, in the format that the film is for.
+    /// Writes the picture, tracing what is left of it, in the format that the film is for.
     ///
     /// # Errors
-    /// What the encoder says, or the system; [`io::ErrorKind::Interrupted`] if `control` said stop.
+    /// Errors of the encoder or of the system; [`io::ErrorKind::Interrupted`] if `control` was stopped.
     pub fn encode(
         &mut self,
         format: Format,
@@ -136,7 +136,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// What it has cost to trace, without the writing.
+    /// The cost of tracing, without writing.
     pub fn cost(self) -> RenderCost {
         match self {
             Self::Levels(strips) => strips.cost(),
@@ -184,7 +184,7 @@ mod tests {
             let mut film = Film::new(format);
             let mut drawing = film.draw(&mut planner, (&scene, &request), &control);
             match &mut drawing {
-                // Of a grid, any rows are what they are in the whole picture.
+                // With grid sampling, strips of any height show the same as the whole picture.
                 Drawing::Levels(strips) => strips.step = 64,
                 Drawing::Linear(strips) => strips.step = 64,
             }

@@ -1,22 +1,22 @@
-//! How coarse the first picture after an edit may be: as fine as fits into the frame budget.
+//! The resolution of the first picture after an edit: as fine as fits into the frame budget.
 
 use std::time::Duration;
 
-/// Time that a picture may take while something is being dragged: 30 pictures a second.
+/// Time that a picture may take during a drag: 30 pictures per second.
 pub const BUDGET: Duration = Duration::from_millis(33);
-/// A first picture never has fewer pixels along its longer side: better late than unreadable.
+/// Least number of pixels along the longer side of a first picture: better late than unreadable.
 const FLOOR_PIXELS: usize = 128;
-/// Coarsest step, whatever the size of the picture.
+/// Largest step, for pictures of any size.
 const COARSEST: usize = 16;
-/// Pictures in a row that must have had time to spare before the next one is finer.
+/// Consecutive pictures with time to spare after which the step becomes finer.
 const PATIENCE: u32 = 3;
-/// Share of the budget that the finer picture must fit into, so that a cost at the border between
-/// two steps does not flicker between them.
+/// Share of the budget that a finer picture must fit into, so that a cost at the border between two steps does not
+/// cause flicker between them.
 const SPARE_SHARE: f64 = 0.75;
 /// Weight of the newest measurement in the moving average.
 const NEWEST: f64 = 0.35;
 
-/// Follows the cost of a pixel and chooses steps from it.
+/// Measures the cost of a pixel and chooses steps by it.
 #[derive(Clone, Debug)]
 pub struct Budget {
     nanos_per_pixel: f64,
@@ -25,7 +25,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Starts coarse: nothing is known yet.
+    /// Starts coarse, as no cost is known yet.
     pub fn new() -> Self {
         Self {
             nanos_per_pixel: 0.0,
@@ -34,7 +34,7 @@ impl Budget {
         }
     }
 
-    /// The step of the first pass over a picture of this size that may take so long.
+    /// Chooses the step of the first pass over a picture of this size that may take this time.
     pub fn choose(&mut self, width: usize, height: usize, time: Duration) -> usize {
         let coarsest = (width.max(height) / FLOOR_PIXELS).clamp(1, COARSEST);
         let floor = 1 << coarsest.ilog2();
@@ -52,7 +52,7 @@ impl Budget {
         self.step
     }
 
-    /// Learns from a first pass of `pixels` pixels.
+    /// Updates the cost of a pixel with a first pass of `pixels` pixels.
     pub fn learn(&mut self, pixels: u64, time: Duration) {
         let nanos = time.as_nanos() as f64 / pixels.max(1) as f64;
         self.nanos_per_pixel = match self.nanos_per_pixel {

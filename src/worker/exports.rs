@@ -1,4 +1,4 @@
-//! The handle's side of exports: a queue under the live view.
+//! The handle's methods for exports, which are queued below the live view in urgency.
 
 use std::time::Duration;
 
@@ -8,8 +8,8 @@ use super::mailbox::Job;
 use crate::export::{ExportError, Exporting, Sequence};
 
 impl Worker {
-    /// Puts a sequence at the end of the queue; the name that it has from now on. The sequence keeps
-    /// the scene as it is now, whatever is edited meanwhile.
+    /// Appends a sequence to the queue and returns its id. The sequence keeps the scene as it is now, regardless of
+    /// later edits.
     ///
     /// # Errors
     /// [`ExportError`], if its folder cannot be made or read.
@@ -34,18 +34,18 @@ impl Worker {
         Ok(id)
     }
 
-    /// All exports, those that have ended too.
+    /// All exports, including those that have ended.
     pub fn exports(&self) -> Vec<ExportState> {
         self.shared.outbox().exports.clone()
     }
 
-    /// Whether an export is going on or waits for its turn.
+    /// Whether an export is running or queued.
     pub fn is_exporting(&self) -> bool {
         let outbox = self.shared.outbox();
         outbox.exports.iter().any(|state| state.ended.is_none())
     }
 
-    /// Lets an export wait, or go on.
+    /// Pauses or resumes an export.
     pub fn pause_export(&self, id: u64, is_paused: bool) {
         let mailbox = self.shared.mailbox();
         let mut outbox = self.shared.outbox();
@@ -60,11 +60,11 @@ impl Worker {
         self.shared.wakeup.notify_all();
     }
 
-    /// Gives an export up, or takes one that has ended out of the list. Frames that are written stay.
+    /// Cancels an export, or removes one that has ended from the list. Frames that are written stay.
     pub fn forget_export(&self, id: u64) {
         let mut mailbox = self.shared.mailbox();
         mailbox.stop_export(id);
-        // Dropped outside of the lock: its writer is waited for by nobody.
+        // Dropped after the lock is released; its writers are not waited for.
         let gone = mailbox.remove_export(id);
         self.shared.outbox().exports.retain(|state| state.id != id);
         drop(mailbox);

@@ -1,20 +1,20 @@
-//! The memory of live pictures: those that nobody looks at any more are painted over.
+//! A pool of live pictures: the memory of those that are no longer shown is reused.
 
 use std::sync::Arc;
 
 use crate::image::Image;
 
-/// One on screen, one on its way there, one being painted.
+/// Most pictures in the pool: one on screen, one on its way there, one being traced.
 const MOST: usize = 3;
 
-/// The live pictures of late.
+/// The most recent live pictures.
 #[derive(Debug, Default)]
 pub struct FramePool {
     handed_out: Vec<Arc<Image>>,
 }
 
 impl FramePool {
-    /// A picture of this size to be painted; what it shows until then means nothing.
+    /// A picture of this size to trace into; its pixels are unspecified.
     pub fn canvas(&mut self, width: usize, height: usize) -> Image {
         let free = self
             .handed_out
@@ -26,7 +26,7 @@ impl FramePool {
         image
     }
 
-    /// Hands a picture out, to come back when the last of its viewers has dropped it.
+    /// Hands a picture out; its memory is reused once the last viewer has dropped it.
     pub fn hand_out(&mut self, image: Image) -> Arc<Image> {
         let image = Arc::new(image);
         if self.handed_out.len() == MOST {

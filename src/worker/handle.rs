@@ -1,4 +1,4 @@
-//! The handle on the render threads.
+//! The handle to the render threads.
 
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Condvar, Mutex};
@@ -16,18 +16,18 @@ use crate::image::Image;
 use crate::lab::Study;
 use crate::trace::{PoolError, RenderControl, Threads};
 
-/// The system started no threads to trace with.
+/// The render threads could not be started.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderThreadError {
-    /// Not those that trace.
+    /// The threads that trace could not be started.
     #[error(transparent)]
     Pool(#[from] PoolError),
-    /// Not one of those that share out the work.
+    /// One of the render threads, which distribute the work, could not be started.
     #[error("cannot start a render thread: {0}")]
     Thread(#[source] std::io::Error),
 }
 
-/// The handle on the render threads. Dropping it ends them.
+/// The handle to the render threads. Dropping it ends them.
 #[derive(Debug)]
 pub struct Worker {
     pub(super) shared: Arc<Shared>,
@@ -35,11 +35,11 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts the render threads, each with `threads` tracing threads: of the two crews, one rests or waits. `wake` is
-    /// called from them after every frame and event.
+    /// Starts the render threads, each with `threads` tracing threads of its own: of the two crews, only one traces
+    /// at a time. They call `wake` after every frame and event.
     ///
     /// # Errors
-    /// [`RenderThreadError`] when the system starts no threads.
+    /// [`RenderThreadError`], if the system refuses a thread.
     pub fn new(
         threads: Option<usize>,
         wake: impl Fn() + Send + Sync + 'static,
@@ -71,55 +71,53 @@ impl Worker {
         self.shared.wakeup.notify_all();
     }
 
-    /// Asks for a live picture in place of any that waits; finer passes over an older one end
-    /// within a few milliseconds. A still picture of an older revision is given up, unless it is
-    /// to be written.
+    /// Requests a live picture, replacing any that waits; finer passes over an older one end within a few
+    /// milliseconds. A still picture of an older revision is given up, unless it is to be saved.
     pub fn submit(&self, job: LiveJob) {
         self.put(Job::Live(job));
     }
 
-    /// Asks for a still picture. One to look at takes the place of any other such; one to be
-    /// written waits its turn and is never given up.
+    /// Requests a still picture. One to look at replaces any other such; one to be saved waits its turn and is not
+    /// replaced.
     pub fn request_still(&self, job: StillJob) {
         self.put(Job::Still(job));
     }
 
-    /// Asks for small pictures, in this order, before those that wait and in place of those of the same
-    /// names.
+    /// Requests thumbnails, in this order, before those that wait, and replacing those of the same names.
     pub fn request_thumbnails(&self, jobs: Vec<ThumbnailJob>) {
         for job in jobs.into_iter().rev() {
             self.put(Job::Thumbnail(job));
         }
     }
 
-    /// The small pictures that were finished since the last call, by name.
+    /// Takes the thumbnails finished since the last call, by name.
     pub fn take_thumbnails(&self) -> Vec<(u64, Image)> {
         std::mem::take(&mut self.shared.outbox().thumbnails)
     }
 
-    /// Asks a question, in place of an older one of the same sort.
+    /// Asks a question, replacing an older one of the same sort.
     pub fn ask(&self, job: QueryJob) {
         self.put(Job::Query(job));
     }
 
-    /// Whether a question waits for its answer.
+    /// Whether a question is not answered yet.
     pub fn is_asked(&self) -> bool {
         let mailbox = self.shared.mailbox();
         mailbox.has(JobKind::Query) || mailbox.has(JobKind::Quality)
     }
 
-    /// The answers since the last call.
+    /// Takes the answers since the last call.
     pub fn take_answers(&self) -> Vec<Answer> {
         std::mem::take(&mut self.shared.outbox().answers)
     }
 
-    /// Gives up the still picture to look at; those that are to be written go on.
+    /// Gives up the still picture to look at; those to be saved go on.
     pub fn leave_still(&self) {
         self.shared.mailbox().give_up(JobKind::Still);
     }
 
-    /// Gives up every still picture, waiting or running. Those that were to be written are told of
-    /// as events; one that is traced already is written.
+    /// Gives up every still picture, waiting or running. Those that were to be saved are reported as events; one that
+    /// is traced already is still written.
     pub fn cancel_still(&self) {
         let mut mailbox = self.shared.mailbox();
         mailbox.give_up(JobKind::Still);
@@ -132,52 +130,51 @@ impl Worker {
         waiting.for_each(|path| self.shared.tell_unwritten(&path));
     }
 
-    /// Measures a study, in place of any other, whenever there is nothing more urgent.
+    /// Measures a study, replacing any other, while there is nothing more urgent.
     pub fn measure(&self, study: Study) {
         self.stop_measuring();
         self.put(Job::Lab(Box::new(study)));
     }
 
-    /// Gives the study up.
+    /// Gives up the study.
     pub fn stop_measuring(&self) {
         self.shared.mailbox().give_up(JobKind::Lab);
         self.shared.outbox().study = None;
     }
 
-    /// Whether a study is being measured, or waits for that. What it has found by the time this is
-    /// false can be taken.
+    /// Whether a study is being measured or waits to be. Once this is false, its last results can be taken.
     pub fn is_measuring(&self) -> bool {
         self.shared.mailbox().has(JobKind::Lab)
     }
 
-    /// The study as far as it is measured, if it has got on since the last call.
+    /// Takes the study with the results so far, if there are new ones since the last call.
     pub fn take_study(&self) -> Option<Study> {
         self.shared.outbox().study.take()
     }
 
-    /// Whether a still picture is being traced, or waits for that.
+    /// Whether a still picture is being traced or waits to be.
     pub fn is_tracing_still(&self) -> bool {
         let mailbox = self.shared.mailbox();
         mailbox.has(JobKind::Still) || mailbox.has(JobKind::Save)
     }
 
-    /// Whether a picture is being written, or waits for that.
+    /// Whether a picture to be saved is being traced or written, or waits to be.
     pub fn is_saving(&self) -> bool {
         self.shared.mailbox().has(JobKind::Save)
     }
 
-    /// The newest live picture, then the newest still one, if there are any that were not taken yet.
+    /// Takes the newest live picture, or else the newest still one, if not taken yet.
     pub fn take_frame(&self) -> Option<Frame> {
         let mut outbox = self.shared.outbox();
         outbox.live.take().or_else(|| outbox.still.take())
     }
 
-    /// What happened since the last call, in order.
+    /// Takes the events since the last call, in order.
     pub fn take_events(&self) -> Vec<Event> {
         std::mem::take(&mut self.shared.outbox().events)
     }
 
-    /// What the render thread is doing, or is about to.
+    /// What the render threads are doing, or will do next.
     pub fn activity(&self) -> Activity {
         let mailbox = self.shared.mailbox();
         let live = mailbox.running(Crew::Prompt);

@@ -1,4 +1,4 @@
-//! What is asked of the render threads, and what they tell.
+//! Requests to the render threads, and their answers.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,41 +13,42 @@ use crate::lab::{Choice, Goal};
 use crate::plan::{Region, RenderRequest};
 use crate::scene::{Camera, Sampling, Scene, Take};
 
-/// The kinds of work, the most urgent first.
+/// The kinds of jobs, most urgent first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum JobKind {
     /// The live view.
     Live,
-    /// A question to the scene.
+    /// A question about a scene.
     Query,
-    /// A small picture for the side.
+    /// A thumbnail.
     Thumbnail,
-    /// A question that is answered by measuring, for seconds.
+    /// A question that takes seconds of measuring to answer.
     Quality,
     /// A still picture to look at.
     Still,
-    /// A still picture to be written.
+    /// A still picture to be saved.
     Save,
     /// A frame of an export.
     Export,
-    /// A piece of the lab's study.
+    /// A part of a study of the lab.
     Lab,
 }
 
-/// The threads that share the work. Nobody who edits waits for a picture that takes long: it is paused meanwhile.
+/// The two render threads. Long jobs are paused while the window needs pictures, so that editing never waits for
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crew {
     /// For what the window shows next.
     Prompt,
-    /// For what was asked for and may take long; begins and goes on while the other rests.
+    /// For jobs that may take long; they start and resume while the other crew is idle.
     Patient,
 }
 
 impl Crew {
-    /// Both.
+    /// Both crews.
     pub const ALL: [Self; 2] = [Self::Prompt, Self::Patient];
 
-    /// What its thread is called.
+    /// The name of its thread.
     pub fn name(self) -> &'static str {
         match self {
             Self::Prompt => "glint-prompt",
@@ -57,7 +58,7 @@ impl Crew {
 }
 
 impl JobKind {
-    /// Which thread does it.
+    /// The crew that does it.
     pub fn crew(self) -> Crew {
         if self < Self::Still {
             Crew::Prompt
@@ -66,9 +67,10 @@ impl JobKind {
         }
     }
 
-    /// Whether a new job of this kind stops one that runs, which begins anew: if it is more urgent for the same thread,
-    /// or takes its place. Small pictures are done before anything could be gained by stopping them, and stop no
-    /// measuring; a picture that is written is stopped by nothing. What measures time cannot be paused.
+    /// Returns whether a new job of this kind stops a running one, which starts over later: if it is for the same
+    /// thread and more urgent, or replaces it. A running thumbnail is not stopped, as it would be done before
+    /// anything was gained; a thumbnail stops no quality measurement; no new job stops a picture that is being saved.
+    /// A study of the lab is stopped by jobs of either crew: what measures time cannot be paused.
     pub fn preempts(self, running: Self) -> bool {
         let is_same = self.crew() == running.crew() || running == Self::Lab;
         let replaces = self == running && self.is_replaced();
@@ -77,50 +79,50 @@ impl JobKind {
         is_same && !waits && (self < running || replaces)
     }
 
-    /// Whether a new job of this kind lets one that runs wait.
+    /// Returns whether a new job of this kind pauses a running one.
     pub fn pauses(self, running: Self) -> bool {
         self.crew() == Crew::Prompt && running.crew() == Crew::Patient
     }
 
-    /// Whether a new job of this kind takes the place of the one before.
+    /// Whether a new job of this kind replaces the previous one.
     pub fn is_replaced(self) -> bool {
         matches!(self, Self::Live | Self::Quality | Self::Still | Self::Lab)
     }
 }
 
-/// What the live view shall show.
+/// A request for the live view.
 #[derive(Clone, Debug)]
 pub struct LiveJob {
-    /// Number of the scene's state; only ever grows.
+    /// Revision of the scene; only ever grows.
     pub revision: u64,
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture, at its full resolution.
     pub request: RenderRequest,
-    /// Whether coarse pictures may come first, to keep up with the hand that edits.
+    /// Whether coarse pictures may come first, to keep up with a drag.
     pub pace: Pace,
 }
 
-/// A question to a scene that takes rays to answer.
+/// A question about a scene whose answer requires tracing rays.
 #[derive(Clone, Debug)]
 pub struct QueryJob {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// What is asked; an older question of the same sort is dropped.
+    /// The question; an older one of the same sort is dropped.
     pub question: Question,
 }
 
-/// What can be asked.
+/// The sorts of questions.
 #[derive(Clone, Debug)]
 pub enum Question {
-    /// What every sample of a recorded flight sees, and what is known of that.
+    /// What does every sample of a recorded flight see? With what is known of that so far.
     Survey(Arc<Take>, Vec<Vec<Landmark>>),
-    /// Which points the camera sees; the number is the asker's.
+    /// Which of these points does the camera see? The number identifies the question to the caller.
     Visible(u64, Box<Camera>, Vec<DVec3>),
-    /// Which object is seen at each pixel of a picture, as if these were not there; the number is the
-    /// asker's.
+    /// Which object is visible at each pixel of a picture, with these things left out? The number identifies the
+    /// question to the caller.
     Objects(u64, Box<RenderRequest>, Vec<Thing>),
-    /// Which sampling the still picture needs.
+    /// Which sampling does the still picture need?
     Quality(Goal),
 }
 
@@ -129,26 +131,26 @@ pub enum Question {
 pub enum Answer {
     /// What the samples of this take see, see [`crate::trace::survey`].
     Survey(Arc<Take>, Vec<Vec<Landmark>>),
-    /// For the question of this number: whether nothing stands before each point.
+    /// For the question of this number: whether each point is unobstructed.
     Visible(u64, Vec<(DVec3, bool)>),
-    /// For the question of this number: what is seen at each pixel without these.
+    /// For the question of this number: what is visible at each pixel, with these things left out.
     Objects(u64, ObjectMap, Vec<Thing>),
-    /// What was measured and chosen for this; `None` if the tracer has failed.
+    /// The goal, and the sampling chosen for it by measuring; `None` if the tracer has failed.
     Quality(Goal, Option<Choice>),
 }
 
-/// A small picture for the side: traced when no live view waits, never stopped, one sample per pixel.
+/// A request for a thumbnail: traced while no live view waits, never stopped, one sample per pixel.
 #[derive(Clone, Debug)]
 pub struct ThumbnailJob {
-    /// What the asker calls it.
+    /// The caller's name for it.
     pub name: u64,
-    /// What it shows.
+    /// The scene that it shows.
     pub scene: Arc<Scene>,
     /// Width and height in pixels.
     pub size: (u32, u32),
 }
 
-/// How a live picture is approached.
+/// How a live picture is refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// A coarse picture within this time, then finer ones.
@@ -157,52 +159,52 @@ pub enum Pace {
     Whole,
 }
 
-/// A picture at full quality, on request.
+/// A request for a picture of full quality.
 #[derive(Clone, Debug)]
 pub struct StillJob {
-    /// Number of the scene's state.
+    /// Revision of the scene.
     pub revision: u64,
     /// The scene at that revision.
     pub scene: Arc<Scene>,
     /// The picture.
     pub request: RenderRequest,
-    /// The picture itself, if it is on screen: formats of 8 bits are written without tracing it again.
+    /// The finished picture, if it is on screen: 8-bit formats are then written without tracing it again.
     pub traced: Option<Arc<Image>>,
-    /// Where to write it. A picture that is to be written outlives edits: it goes on when the live view is done.
+    /// Where to write it. A picture to be saved outlives edits: it resumes when the live view is done.
     pub save_to: Option<PathBuf>,
 }
 
 /// A picture to look at.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// The scene's state that it shows.
+    /// Revision of the scene that it shows.
     pub revision: u64,
-    /// The pixels that are traced so far: every `step`-th of the full picture.
+    /// The pixels traced so far: every `step`-th of every `step`-th row of the full picture.
     pub image: Arc<Image>,
     /// Full width and height in pixels.
     pub full_size: (usize, usize),
-    /// 1 in a finished picture.
+    /// Distance between traced pixels; 1 in a finished picture.
     pub step: usize,
-    /// How its edges are smoothed.
+    /// Its sampling, which determines how edges are smoothed.
     pub sampling: Sampling,
-    /// Whether this is the still picture and not the live view.
+    /// Whether it is a still picture rather than the live view.
     pub is_still: bool,
-    /// The part that is traced, if not all of it is.
+    /// The part of the picture that is traced, if not all of it.
     pub region: Option<Region>,
-    /// What it cost so far.
+    /// The cost so far.
     pub cost: RenderCost,
 }
 
-/// What the render thread is doing.
+/// What the render threads are doing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Activity {
-    /// Nothing that anybody waits for; perhaps measuring.
+    /// Nothing that the user waits for; possibly measuring.
     Idle,
     /// Tracing the live view of a revision.
     Live {
         /// The revision.
         revision: u64,
-        /// Time since it was started.
+        /// Time since the start, without pauses.
         elapsed: Duration,
     },
     /// Tracing a still picture.
@@ -211,37 +213,37 @@ pub enum Activity {
         done: u64,
         /// Pixels of the picture.
         total: u64,
-        /// Time since it was started.
+        /// Time since the start, without pauses.
         elapsed: Duration,
     },
 }
 
-/// An export, as far as it is.
+/// The state of an export.
 #[derive(Clone, Debug)]
 pub struct ExportState {
-    /// What it is called by the worker.
+    /// Id assigned by the worker.
     pub id: u64,
-    /// Where the frames go.
+    /// Folder of the frames.
     pub folder: PathBuf,
-    /// How many frames are done.
+    /// Frames done so far.
     pub done: Exported,
-    /// Time that the render thread has spent on it; what it waited does not count.
+    /// Time that the render thread has spent on it, without waiting.
     pub busy: Duration,
-    /// Whether it waits until it is told to go on.
+    /// Whether it is paused until it is told to resume.
     pub is_paused: bool,
     /// A small picture of the frame that was traced last.
     pub last: Option<Arc<Image>>,
-    /// How it ended, if it has: the error in words for the user.
+    /// How it ended, if it has; an error is in words for the user.
     pub ended: Option<Result<(), String>>,
 }
 
-/// What happened on the render thread that the user should know.
+/// Something that happened on a render thread and that the user should know.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A still picture was written to this file.
     Saved(PathBuf),
-    /// A picture was not written, and why.
+    /// A picture was not written, with the reason.
     Failed(String),
-    /// The tracer itself failed, in words for the user.
+    /// The tracer itself failed; described in words for the user.
     Fault(String),
 }

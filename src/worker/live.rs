@@ -1,4 +1,4 @@
-//! A live picture on its way: coarse first, finer while there is time, clean edges last.
+//! Tracing of a live picture: coarse first, finer while there is time, smooth edges last.
 
 use std::time::Instant;
 
@@ -10,21 +10,21 @@ use crate::image::{Image, RenderCost};
 use crate::scene::Sampling;
 use crate::trace::{Grid, Pass, Rays, RenderControl, Tracer};
 
-/// A live picture on its way: a coarse pass that always completes, so that there is always
-/// something new to show; then finer ones until a newer job comes, and clean edges last.
+/// A live picture being traced: first a coarse pass that always completes, so that there is always something new to
+/// show; then finer ones until a newer job arrives; smooth edges last.
 pub struct Live<'a> {
-    /// Where it publishes.
+    /// Receives the finished passes.
     pub shared: &'a Shared,
-    /// What was asked for.
+    /// The request.
     pub job: &'a LiveJob,
-    /// What traces it.
+    /// The tracer, planned for the request.
     pub tracer: Tracer,
-    /// Memory of pictures before.
+    /// Provides the memory of earlier pictures.
     pub frame_pool: &'a mut FramePool,
 }
 
 impl Live<'_> {
-    /// Traces and publishes until it is complete or stopped.
+    /// Traces and publishes passes until the picture is complete or stopped.
     pub fn run(&mut self, control: &RenderControl, budget: &mut Budget, start: Instant) {
         if self.trace_centres(control, budget, start).is_some()
             && self.job.request.sampling != Sampling::Centres
@@ -33,7 +33,7 @@ impl Live<'_> {
         }
     }
 
-    /// Traces every pixel's centre once; `None` if it was stopped.
+    /// Traces the centre of every pixel once, in passes from coarse to fine; `None` if it was stopped.
     fn trace_centres(
         &mut self,
         control: &RenderControl,
@@ -41,7 +41,7 @@ impl Live<'_> {
         start: Instant,
     ) -> Option<()> {
         let mut image = self.canvas();
-        // What was planned is no price of a pixel.
+        // Planning does not count towards the cost of a pixel.
         let traced_from = Instant::now();
         let first = match self.job.pace {
             Pace::Within(time) => budget.choose(image.width, image.height, time),

@@ -1,4 +1,4 @@
-//! What waits to be done, and what is being done.
+//! The mailbox: waiting and running jobs.
 
 use std::mem::{Discriminant, discriminant};
 use std::path::PathBuf;
@@ -12,21 +12,21 @@ use crate::export::Exporting;
 use crate::lab::Study;
 use crate::trace::RenderControl;
 
-/// Something to be done.
+/// A job.
 #[derive(Debug)]
 pub enum Job {
     Live(LiveJob),
     Query(QueryJob),
     Thumbnail(ThumbnailJob),
-    /// To look at, or to be written.
+    /// To look at, or to be saved.
     Still(StillJob),
-    /// The export of this name.
+    /// The export of this id.
     Export(u64, Box<Exporting>),
     Lab(Box<Study>),
 }
 
 impl Job {
-    /// How urgent it is.
+    /// The kind of the job, which determines its urgency.
     pub fn kind(&self) -> JobKind {
         match self {
             Self::Live(_) => JobKind::Live,
@@ -52,7 +52,7 @@ impl Job {
                 discriminant(&old.question) == discriminant(&new.question)
             }
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
-            // A still picture to look at is of the past once the scene has changed.
+            // A still picture to look at is outdated once the scene has changed.
             (Self::Still(old), Self::Live(new)) => {
                 old.save_to.is_none() && old.revision < new.revision
             }
@@ -60,7 +60,7 @@ impl Job {
         }
     }
 
-    /// What sort of question it asks.
+    /// The sort of question it asks, if it is a question.
     fn question(&self) -> Option<Discriminant<Question>> {
         match self {
             Self::Query(query) => Some(discriminant(&query.question)),
@@ -76,26 +76,26 @@ impl Job {
     }
 }
 
-/// What is being done.
+/// A running job.
 #[derive(Debug)]
 pub struct Running {
-    /// How urgent it is.
+    /// The kind of the job, which determines its urgency.
     pub kind: JobKind,
-    /// The scene's state, of live and still pictures.
+    /// Revision of the scene, for live and still pictures; 0 for others.
     pub revision: u64,
-    /// Pixels of a still picture.
+    /// Number of pixels of a still picture; 0 for others.
     pub pixels: u64,
-    /// Where a still picture is to be written.
+    /// Where a still picture is to be written, if it is.
     pub save_to: Option<PathBuf>,
-    /// The name of an export.
+    /// Id of the export, if it is one.
     pub export: Option<u64>,
-    /// What sort of question it is.
+    /// The sort of question, if it is one.
     question: Option<Discriminant<Question>>,
     /// Stops it.
     pub control: Arc<RenderControl>,
-    /// When it was begun.
+    /// When it was started.
     pub started: Instant,
-    /// Whether it is not wanted any more: stopped, it does not come back.
+    /// Whether it is no longer wanted: once stopped, it does not return to the queue.
     pub is_given_up: bool,
 }
 
@@ -129,29 +129,28 @@ impl Running {
         self.control.stop();
     }
 
-    /// Time since it was begun in which it did not wait.
+    /// Time since it was started, without pauses.
     pub fn spent(&self) -> Duration {
         let spent = self.started.elapsed();
         spent.saturating_sub(self.control.paused())
     }
 }
 
-/// The list of what waits, and what is being done.
+/// The queue of waiting jobs, and the running ones.
 #[derive(Debug, Default)]
 pub struct Mailbox {
-    /// In order of arrival, but for small pictures.
+    /// In order of arrival, except for thumbnails, which go first.
     waiting: Vec<Job>,
-    /// What each crew is doing.
+    /// The running job of each crew.
     running: [Option<Running>; 2],
-    /// How many exports there were: the name of the newest.
+    /// Number of exports so far: the id of the newest.
     pub export_count: u64,
     /// Whether the threads are to end.
     pub quit: bool,
 }
 
 impl Mailbox {
-    /// Takes a job in: it takes the place of those that it makes pointless, and stops what is running, or lets it wait,
-    /// if it is more urgent.
+    /// Adds a job: it replaces those that it makes pointless, and stops or pauses running ones if it is more urgent.
     pub fn put(&mut self, job: Job) {
         self.waiting.retain(|old| !old.is_replaced_by(&job));
         for running in self.running.iter_mut().flatten() {
@@ -168,7 +167,7 @@ impl Mailbox {
                 running.control.pause();
             }
         }
-        // The newest small pictures are those that are looked for.
+        // The newest thumbnails are the ones wanted now.
         let index = match job {
             Job::Thumbnail(_) => 0,
             _ => self.waiting.len(),
@@ -176,24 +175,24 @@ impl Mailbox {
         self.waiting.insert(index, job);
     }
 
-    /// What a crew is doing.
+    /// The running job of a crew.
     pub fn running(&self, crew: Crew) -> Option<&Running> {
         self.running[crew as usize].as_ref()
     }
 
-    /// Whether anybody waits for what the window shows next.
+    /// Whether a job for what the window shows next is running or waiting.
     fn is_hurried(&self) -> bool {
         let mut waiting = self.waiting.iter();
         self.running(Crew::Prompt).is_some() || waiting.any(|job| job.kind().crew() == Crew::Prompt)
     }
 
-    /// Whether what was begun waits for what the window shows next.
+    /// Whether the running job of the patient crew is paused.
     pub fn is_paused(&self) -> bool {
         let running = self.running(Crew::Patient);
         running.is_some_and(|running| running.control.is_paused())
     }
 
-    /// Lets what waits for the window go on, unless somebody has asked for more in the last moment.
+    /// Resumes the paused job, unless another one for the window has arrived in the meantime.
     pub fn go_on(&self) {
         let running = self.running(Crew::Patient);
         if let Some(running) = running.filter(|_| !self.is_hurried()) {
@@ -201,7 +200,7 @@ impl Mailbox {
         }
     }
 
-    /// Takes the most urgent job of a crew out, the first of those. An export that is paused waits.
+    /// Takes out the most urgent job of a crew, the first in the queue of its kind. Paused exports are skipped.
     pub fn next(
         &mut self,
         crew: Crew,
@@ -224,8 +223,8 @@ impl Mailbox {
         Some((job, control))
     }
 
-    /// A crew has ended what it was doing. A job that was stopped for a more urgent one is the next of its
-    /// kind, unless it was given up. What was running.
+    /// Notes that a crew has ended its job, and returns what was running. A `stopped` job becomes the next of its
+    /// kind, unless it was given up.
     pub fn finish(&mut self, crew: Crew, stopped: Option<Job>) -> Option<Running> {
         let running = self.running[crew as usize].take();
         let is_wanted = running.as_ref().is_some_and(|running| !running.is_given_up);
@@ -235,19 +234,19 @@ impl Mailbox {
         running
     }
 
-    /// The first job of a kind that waits.
+    /// The first waiting job of a kind.
     pub fn waiting(&self, kind: JobKind) -> Option<&Job> {
         self.waiting.iter().find(|job| job.kind() == kind)
     }
 
-    /// Whether a job of a kind runs or waits.
+    /// Whether a job of a kind is running or waiting.
     pub fn has(&self, kind: JobKind) -> bool {
         let mut running = self.running.iter().flatten();
         running.any(|running| running.kind == kind && !running.is_given_up)
             || self.waiting(kind).is_some()
     }
 
-    /// Gives the jobs of a kind up, those that wait and the one that runs. Those that waited.
+    /// Gives up the jobs of a kind, waiting or running. Returns those that were waiting.
     pub fn give_up(&mut self, kind: JobKind) -> Vec<Job> {
         let running = self.running.iter_mut().flatten();
         for running in running.filter(|running| running.kind == kind) {
@@ -260,7 +259,7 @@ impl Mailbox {
         gone
     }
 
-    /// Stops the frame of an export that is being traced; it is the next again.
+    /// Stops an export within the frame being traced, which is traced again next.
     pub fn stop_export(&self, id: u64) {
         let running = self.running(Crew::Patient);
         if let Some(running) = running.filter(|running| running.export == Some(id)) {
@@ -268,7 +267,7 @@ impl Mailbox {
         }
     }
 
-    /// Ends everything.
+    /// Ends the threads and all their jobs.
     pub fn quit(&mut self) {
         self.quit = true;
         for running in self.running.iter_mut().flatten() {
@@ -276,7 +275,7 @@ impl Mailbox {
         }
     }
 
-    /// Takes an export that waits out of the list.
+    /// Removes a waiting export from the queue.
     pub fn remove_export(&mut self, id: u64) -> Option<Job> {
         let index = self
             .waiting

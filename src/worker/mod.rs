@@ -1,7 +1,7 @@
-//! The background: two named threads that trace, one for what the window shows next, and one for what takes long and
-//! waits meanwhile. The editor drops a request into a mailbox
-//! and goes on; the newest wins; finished pictures wait in an outbox. Nothing here knows about windows:
-//! `wake` is called whenever there is something to look at.
+//! Background work: two named render threads, one for what the window shows next, and one for work that takes long,
+//! which is paused meanwhile. The editor puts requests into a mailbox and goes on, the newest live request replacing
+//! older ones; finished pictures wait in an outbox. Nothing here depends on windows: the callback `wake` is called
+//! whenever there is something to fetch.
 
 mod task;
 

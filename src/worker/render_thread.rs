@@ -1,4 +1,4 @@
-//! The threads themselves: each takes the most urgent job of its crew, traces, publishes.
+//! The render threads: each takes the most urgent job of its crew, traces it and publishes the result.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -19,33 +19,33 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
 use crate::trace::{KeptQuery, RenderControl, Threads, Tracer, survey, visible};
 
-/// Time between two reports of a study.
+/// Least time between two reports of a study.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What was paused goes on after so long: a hand that drags, or a flight that plays, asks for its next picture before.
+/// Idle time after which paused work resumes: during a drag or playback, the next picture is requested sooner.
 const CALM: Duration = Duration::from_millis(100);
 
 /// How a job ended.
 enum JobOutcome {
     /// There is nothing more to do for it.
     Ended,
-    /// It was stopped on the way, or has more to do.
+    /// It was stopped, or has more to do.
     Unfinished,
-    /// A frame of an export, or what came in its way.
+    /// A step of an export has ended.
     Export(ExportStep),
 }
 
-/// What a thread keeps from one job to the next.
+/// State that a thread keeps between jobs.
 struct KeptState {
     budget: Budget,
     frame_pool: FramePool,
     mapper: ObjectMapper,
     query: KeptQuery,
-    /// What was planned for the last picture that was asked for.
+    /// The planner of still pictures.
     planner: Planner,
 }
 
-/// Works until told to quit. A panic in a job becomes an event, and the thread lives on.
+/// Runs jobs until told to quit. A panic in a job becomes an event, and the thread continues.
 pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
     let mut kept = KeptState {
         budget: Budget::new(),
@@ -63,7 +63,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
             Ok(outcome) => {
                 let is_study = matches!(job, Job::Lab(_));
                 let has_more = finish(shared, job, Some(outcome));
-                // Drawing the window would disturb what is being timed.
+                // Waking the window to redraw would disturb the time measurements.
                 if is_study && has_more && woken.elapsed() < REPORT_INTERVAL {
                     continue;
                 }
@@ -83,7 +83,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
             }
         };
         woken = Instant::now();
-        // The other crew may wait until this one rests.
+        // The other crew may be waiting until this one is idle.
         shared.wakeup.notify_all();
         if let Some(panic) = panic {
             shared.tell(Event::Fault(format!(
@@ -95,7 +95,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
     }
 }
 
-/// Does a job, or a piece of it.
+/// Does a job, or a part of it.
 fn work_on(
     shared: &Shared,
     job: &mut Job,
@@ -128,7 +128,7 @@ fn work_on(
     }
 }
 
-/// Waits for work.
+/// Waits for the next job; `None` means to quit.
 fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
     let mut mailbox = shared.mailbox();
     loop {
@@ -153,7 +153,8 @@ fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
     }
 }
 
-/// Reports how a job ended; `None` is a fault of the tracer. Whether it is wanted and has more to do.
+/// Reports how a job ended; the outcome `None` is a fault of the tracer. Returns whether the job is still wanted and
+/// has more to do.
 fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
     match (job, outcome) {
         (Job::Export(id, exporting), outcome) => {
@@ -180,8 +181,8 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
     }
 }
 
-/// Puts an export back for its next frame, or says how it ended. One that is not wanted any more is
-/// dropped.
+/// Puts an export back into the queue for its next frame, or notes how it ended. An export that is no longer wanted
+/// is dropped.
 fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: Option<ExportStep>) {
     let is_going = matches!(step, Some(ExportStep::Going | ExportStep::Stopped));
     let ended = match step {
@@ -206,8 +207,8 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
     }
 }
 
-/// Publishes what a piece of a study has found, and puts the study back if there is more of it to do.
-/// Whether there is.
+/// Publishes the results of a study so far, and puts it back into the queue if there is more to do. Returns whether
+/// there is.
 fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> bool {
     let mut mailbox = shared.mailbox();
     let found = Study::clone(&study);
@@ -256,7 +257,8 @@ fn answer(
     }
 }
 
-/// A recorded flight is kept even if nobody can tell what it saw, and nobody waits for a quality for ever.
+/// Answers a question whose job has panicked, if someone waits for it: a recorded flight is kept even without its
+/// survey, and a request for a quality must end.
 fn answer_nothing(shared: &Shared, job: &QueryJob) {
     let answer = match &job.question {
         Question::Survey(take, _) => {

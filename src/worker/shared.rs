@@ -1,4 +1,4 @@
-//! What the render threads and their handle share.
+//! State shared by the render threads and their handle.
 
 use std::path::Path;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -10,30 +10,30 @@ use crate::lab::Study;
 use crate::plan::Planner;
 use crate::trace::RenderControl;
 
-/// The mailbox, the outbox, and how each side wakes the other.
+/// The mailbox, the outbox, and the means by which each side wakes the other.
 pub struct Shared {
-    /// What is to be done.
+    /// The jobs.
     pub mailbox: Mutex<Mailbox>,
-    /// Rung when there is something in the mailbox.
+    /// Notified when the mailbox has changed.
     pub wakeup: Condvar,
-    /// What was done.
+    /// The results.
     pub outbox: Mutex<Outbox>,
-    /// What was planned for the window; what is written shares its meshes.
+    /// The planner of the window's pictures; pictures to be saved share its meshes.
     pub planner: Mutex<Planner>,
-    /// Controls what only quitting stops: first passes and small pictures.
+    /// Controls what only quitting stops: first passes and thumbnails.
     pub until_quit: RenderControl,
     /// Called when there is something in the outbox.
     pub wake: Box<dyn Fn() + Send + Sync>,
 }
 
-/// What was done and not taken yet.
+/// Results that were not taken yet.
 #[derive(Debug, Default)]
 pub struct Outbox {
     pub live: Option<Frame>,
     pub still: Option<Frame>,
     pub thumbnails: Vec<(u64, Image)>,
     pub answers: Vec<Answer>,
-    /// Every export, those that have ended too.
+    /// All exports, including those that have ended.
     pub exports: Vec<ExportState>,
     pub study: Option<Study>,
     pub events: Vec<Event>,
@@ -46,22 +46,22 @@ impl std::fmt::Debug for Shared {
 }
 
 impl Shared {
-    /// The mailbox. Where both are needed, it is locked before the outbox.
+    /// Locks the mailbox. Where both are needed, it must be locked before the outbox.
     pub fn mailbox(&self) -> MutexGuard<'_, Mailbox> {
         lock(&self.mailbox)
     }
 
-    /// The outbox.
+    /// Locks the outbox.
     pub fn outbox(&self) -> MutexGuard<'_, Outbox> {
         lock(&self.outbox)
     }
 
-    /// What was planned for the window.
+    /// Locks the planner of the window's pictures.
     pub fn planner(&self) -> MutexGuard<'_, Planner> {
         lock(&self.planner)
     }
 
-    /// Puts a picture into the slot of its kind, in place of one that was not taken yet.
+    /// Puts a picture into the slot of its kind, replacing one that was not taken yet.
     pub fn publish(&self, frame: Frame) {
         let mut outbox = self.outbox();
         let slot = if frame.is_still {
@@ -74,7 +74,7 @@ impl Shared {
         (self.wake)();
     }
 
-    /// Tells the user that a picture was given up.
+    /// Tells the user that a picture was not written.
     pub fn tell_unwritten(&self, path: &Path) {
         let path = path.display();
         self.tell(Event::Failed(format!("{path} was not written")));
@@ -87,7 +87,7 @@ impl Shared {
     }
 }
 
-/// A panic while the lock was held left plain data behind: it is used as it is.
+/// Locks a mutex even if it is poisoned: a panic leaves nothing but plain data behind, which is used as it is.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -6,11 +6,11 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Work on a thread of its own, or none: what it returns is asked for until it is there, and taken once.
+/// Work on a thread of its own, or none; its result is polled for and can be taken once.
 #[derive(Debug)]
 pub struct Background<T>(Option<Receiver<T>>);
 
-/// The thread of some work could not be started, or it ended in a panic.
+/// The thread of the work could not be started, or it panicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the thread for it could not be started, or stopped with a fault of its own")]
 pub struct NoAnswer;
@@ -22,18 +22,18 @@ impl<T> Default for Background<T> {
 }
 
 impl<T> From<Receiver<T>> for Background<T> {
-    /// Work that is going on elsewhere, and sends its answer.
+    /// Work that runs elsewhere and sends its result.
     fn from(receiver: Receiver<T>) -> Self {
         Self(Some(receiver))
     }
 }
 
 impl<T: Send + 'static> Background<T> {
-    /// Begins work on a thread of that name.
+    /// Starts work on a thread of this name.
     pub fn start(name: &str, work: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, receiver) = channel();
-        // Where no thread can be had, the sender is dropped with the closure: the receiver sees the closed channel, as
-        // it does after a panic.
+        // If no thread can be started, the sender is dropped with the closure: the receiver sees the closed channel,
+        // as it does after a panic.
         let _ = spawn(name, move || {
             let _ = sender.send(work());
         });
@@ -42,7 +42,7 @@ impl<T: Send + 'static> Background<T> {
 }
 
 impl Background<()> {
-    /// Looks every so often on a thread of that name until there is something, and calls `wake` then.
+    /// Polls `is_there` at intervals of `rhythm` on a thread of this name until it is true, and calls `wake` then.
     pub fn look_out(
         name: &str,
         rhythm: Duration,
@@ -64,23 +64,23 @@ impl Background<()> {
 }
 
 impl<T> Background<T> {
-    /// Whether there is work whose answer was not taken yet.
+    /// Whether there is work whose result was not taken yet.
     pub fn is_awaited(&self) -> bool {
         self.0.is_some()
     }
 
-    /// What came of the work; `None` where it is not there yet, or taken, or no work was begun.
+    /// Takes the result; `None` if it has not arrived, was taken, or no work was started.
     ///
     /// # Errors
-    /// [`NoAnswer`] once, if it never comes.
+    /// [`NoAnswer`] once, if it will never arrive.
     pub fn take(&mut self) -> Option<Result<T, NoAnswer>> {
         self.take_within(Duration::ZERO)
     }
 
-    /// The same, after so long at most.
+    /// Like [`Self::take`], but waits up to `most` for the result.
     ///
     /// # Errors
-    /// [`NoAnswer`] once, if it never comes.
+    /// [`NoAnswer`] once, if it will never arrive.
     pub fn take_within(&mut self, most: Duration) -> Option<Result<T, NoAnswer>> {
         let answer = match self.0.as_ref()?.recv_timeout(most) {
             Ok(answer) => Ok(answer),
@@ -91,7 +91,7 @@ impl<T> Background<T> {
         Some(answer)
     }
 
-    /// Waits until the work is over, if there is any; what came of it is not wanted.
+    /// Waits until the work, if any, is over, and discards its result.
     pub fn finish(self) {
         if let Some(receiver) = self.0 {
             let _ = receiver.recv();
@@ -109,7 +109,7 @@ pub(super) fn spawn(
         .spawn(work)
 }
 
-/// What a caught panic said.
+/// The message of a caught panic.
 pub fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))

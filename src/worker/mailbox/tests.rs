@@ -28,7 +28,7 @@ fn lab() -> Job {
     Job::Lab(Box::new(Study::of_side(scene, 8)))
 }
 
-/// Takes what a crew does next.
+/// Takes the next job of a crew.
 fn begin(mailbox: &mut Mailbox, crew: Crew) -> Option<Job> {
     mailbox.next(crew, &[]).map(|(job, _)| job)
 }
