@@ -81,7 +81,7 @@ impl Editor {
         };
         let more = match problems.count() {
             0 => String::new(),
-            more => format!(" ({more} more are missing)"),
+            more => format!(" ({more} more missing)"),
         };
         let name = &self.scene.objects[index].name;
         let text = format!("{name:?} is not in the picture: {why}{more}");
