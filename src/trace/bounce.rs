@@ -45,7 +45,7 @@ impl<L: SimdFloat> Bounce<L> {
     pub fn new(plan: &Plan<L::Real>) -> Self {
         let candidates_of = |light| {
             let casters = Candidates::all_casting(plan, light);
-            // Without culling, the narrow ones among them are not picked out.
+            // Without culling, nothing picks out the thin ones: all of them count.
             let thin = match plan.screen {
                 Some(_) => Candidates::default(),
                 None => casters.clone(),

@@ -10,7 +10,7 @@ const LONGEST: f64 = 1.75;
 /// Rounding error of a ray that is aimed at a point, in units of the rounding error of its start.
 const ROUNDED_TWICE: f64 = 2.0;
 
-/// Rays, and their common ranges along each axis.
+/// Rays, and the intervals that contain them along each axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Bundle<L: SimdFloat> {
     /// The lanes that have a ray.
@@ -19,19 +19,19 @@ pub struct Bundle<L: SimdFloat> {
     origins: [Vec3<L>; 2],
     /// The reciprocals of the directions.
     inverse: Vec3<L>,
-    /// The common ranges of the rays.
+    /// The intervals that contain all of the rays.
     shaft: Shaft<L::Real>,
     /// Whether boxes that no ray meets are skipped.
     is_boxed: bool,
 }
 
-/// The common ranges of rays along each axis: of their starts and of their directions.
+/// For each axis, the intervals that contain the starts of all rays and the reciprocals of their directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft<R> {
     axes: [ShaftAxis<R>; 3],
 }
 
-/// The common ranges of rays along one axis.
+/// The intervals along one axis.
 #[derive(Clone, Copy, Debug)]
 struct ShaftAxis<R> {
     /// 0 if all rays go upwards and meet the lower plane of a box first; 1 if all go downwards; `None` if they go
@@ -55,7 +55,7 @@ impl<L: SimdFloat> Bundle<L> {
     }
 
     /// The paths from a point to the starts of the rays, all parametrised to length 1; the rays must go to that
-    /// point. Their common ranges form a pyramid, instead of the space spanned by two boxes.
+    /// point. They are contained in a pyramid, instead of the space that two boxes span.
     #[inline(always)]
     pub fn from_point(
         point: Vec3<L::Real>,
@@ -106,7 +106,7 @@ impl<L: SimdFloat> Bundle<L> {
         }
     }
 
-    /// The same rays in coordinates relative to `centre`, among things that were within `reach` before.
+    /// The same rays in coordinates relative to `centre`; the margin for rounding stays that of the original ones.
     #[inline(always)]
     #[must_use]
     pub fn seen_from(&self, centre: Vec3<L::Real>) -> Self {
@@ -119,7 +119,7 @@ impl<L: SimdFloat> Bundle<L> {
         }
     }
 
-    /// The common ranges of the rays.
+    /// The intervals that contain all of the rays.
     #[inline(always)]
     pub fn shaft(&self) -> &Shaft<L::Real> {
         &self.shaft
@@ -185,7 +185,7 @@ impl<L: SimdFloat> Bundle<L> {
         bits & node.filled()
     }
 
-    /// The ranges of a single ray.
+    /// The shaft of a single ray.
     #[inline(always)]
     fn ray(&self, lane: usize) -> Shaft<L::Real> {
         let [below, above] = &self.origins;
@@ -204,7 +204,7 @@ impl<L: SimdFloat> Bundle<L> {
 }
 
 impl<R: Real> Shaft<R> {
-    /// The ranges of rays that start in one box and whose directions lie in another.
+    /// The shaft of rays that start in one box and whose directions lie in another.
     pub fn of(origins: &BoundingBox<R>, directions: &BoundingBox<R>) -> Self {
         let (lows, highs) = (origins.low.to_array(), origins.high.to_array());
         let (froms, tos) = (directions.low.to_array(), directions.high.to_array());
@@ -214,7 +214,7 @@ impl<R: Real> Shaft<R> {
         }
     }
 
-    /// The same ranges in coordinates relative to `centre`.
+    /// The same shaft in coordinates relative to `centre`.
     #[inline(always)]
     #[must_use]
     pub fn seen_from(&self, centre: Vec3<R>) -> Self {
@@ -348,7 +348,7 @@ impl<R: Real> ShaftAxis<R> {
         )
     }
 
-    /// The range of rays with these origins, and with directions between `from` and `to`.
+    /// The intervals of rays that start between these origins, and have directions between `from` and `to`.
     fn of(origins: [R; 2], [from, to]: [R; 2]) -> Self {
         let inverse = if from > R::ZERO || to < R::ZERO {
             let (one, other) = (R::ONE / to, R::ONE / from);

@@ -14,7 +14,7 @@ use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// Coincident surfaces are searched for along the rays up to this many times the distance allowed between them:
-/// that is how far apart they are at 89 degrees from the normal.
+/// that is how far apart they are along a ray at 89 degrees from the normal.
 const SLANT: f64 = 64.0;
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {

@@ -28,7 +28,7 @@ pub struct CrossedCell<R> {
     /// What is seen on both sides.
     things: [EdgeSide<R>; 2],
     crossings: [Crossing; 2],
-    /// Whether the points that check if the edge is straight were chosen; `None` for no such point.
+    /// Whether `checks` is set: the points whose samples show if the edge is straight.
     is_checked: bool,
     checks: [Option<[u16; 2]>; 2],
     /// Indices of the samples at these points.

@@ -48,9 +48,9 @@ pub struct Crossing {
     pub low: u16,
     /// Steps from the corner to the first sample beyond the edge.
     pub high: u16,
-    /// The search ends when these are no more than this apart.
+    /// The search ends once `high - low` is no more than this.
     enough: u16,
-    /// Indices of these two samples.
+    /// Indices of the samples at `low` and `high`.
     pub seen: [u32; 2],
     /// Indices of the samples requested between them.
     inside: [u32; 3],

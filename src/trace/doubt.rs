@@ -123,8 +123,8 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
     }
 }
 
-/// Smallest cosine between rays and a surface's normal at which hits are judged: if it were smaller, more would be
-/// searched around hits; if it were larger, more would be traced again.
+/// Smallest cosine between rays and a surface's normal at which hits are judged: if it were smaller, more would have
+/// to be searched around hits; if it were larger, more would be traced again.
 const LEAST_COSINE: f64 = 4e-3;
 /// Least error per unit of distance at which mirrored rays are not judged.
 const WIDEST: f64 = 1e-3;
