@@ -56,7 +56,7 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
         })
     }
 
-    /// The triangle, unless it is shaded smoothly, and the origin of its corners' coordinates.
+    /// The triangle, if it is shaded flat or its corner normals are alike, and the origin of its corners' coordinates.
     pub fn flat(&self) -> Option<(&'a PackedTriangle<R>, Vec3<R>)> {
         let triangle = match self.form {
             Form::Flat(triangle) => triangle,
