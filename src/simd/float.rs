@@ -1,4 +1,4 @@
-//! Lanes: several real numbers computed in step, one ray in each.
+//! SIMD lanes: several real numbers computed in step, one for each ray.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -6,13 +6,13 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{Select as _, Simd, SimdMask};
 
-/// Most lanes that any processor has.
+/// The greatest number of lanes on any processor.
 pub const MAX_LANES: usize = 16;
 
-/// A row of real numbers of one type, computed in step.
+/// A vector of real numbers of one type, computed in step.
 ///
-/// Every operation is the correctly rounded one of IEEE 754 in every lane, so a lane's result does
-/// not depend on how many others there are. A comparison with NaN is false.
+/// Every operation is correctly rounded as defined by IEEE 754 in every lane, so a lane's result does not depend on
+/// the number of lanes. A comparison with NaN is false.
 pub trait SimdFloat:
     Copy
     + Send
@@ -24,44 +24,44 @@ pub trait SimdFloat:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// One number of the row.
+    /// The type of one lane.
     type Real: Real;
     /// One truth value per lane.
     type Mask: Mask + Send;
-    /// The proof that the processor has these lanes.
+    /// The proof that the processor supports these vectors.
     type Token: Copy;
-    /// How many lanes there are.
+    /// The number of lanes.
     const WIDTH: usize;
-    /// Whether kernels are worth being compiled once more for what is simple, and quicker then: those of vectors in
-    /// single precision.
+    /// Whether it is worthwhile to compile faster kernels for simple scenes in addition: only for vectors in single
+    /// precision.
     const HAS_SIMPLE_KERNELS: bool;
 
     /// The same number in every lane.
     fn splat(token: Self::Token, value: Self::Real) -> Self;
-    /// The proof that the processor has these lanes: every row carries it.
+    /// The proof that the processor supports these vectors, which every vector carries.
     fn token(self) -> Self::Token;
-    /// A number in as many lanes as this row has.
+    /// Broadcasts a number to as many lanes as this vector has.
     #[inline(always)]
     fn like(self, value: Self::Real) -> Self {
         Self::splat(self.token(), value)
     }
-    /// The nearest number that the real type has, in as many lanes as this row has.
+    /// Broadcasts the nearest representable number to as many lanes as this vector has.
     #[inline(always)]
     fn like_f64(self, value: f64) -> Self {
         self.like(Self::Real::from_f64(value))
     }
     /// `number(i)` in lane i.
     fn from_fn(token: Self::Token, number: impl FnMut(usize) -> Self::Real) -> Self;
-    /// The first [`Self::WIDTH`] numbers of a slice that has as many.
+    /// Loads the first [`Self::WIDTH`] numbers of a slice, which must have as many.
     fn load(token: Self::Token, numbers: &[Self::Real]) -> Self;
-    /// The same of numbers in single precision.
+    /// Does the same with numbers in single precision.
     fn load_singles(token: Self::Token, numbers: &[f32]) -> Self;
-    /// Writes the lanes to the start of a slice that has room for them.
+    /// Writes the lanes to the start of a slice, which must have room for them.
     fn store(self, numbers: &mut [Self::Real]);
     /// The number in one lane, `index` < [`Self::WIDTH`].
     fn lane(self, index: usize) -> Self::Real;
-    /// Runs `work`, which must be `#[inline(always)]`, as a function of its own, with the processor's
-    /// instructions known to the compiler: what a recursion needs, which cannot be inlined.
+    /// Runs `work`, which must be `#[inline(always)]`, as a function of its own that is compiled for the
+    /// processor's instructions: needed for recursion, which cannot be inlined.
     fn vectorize<T>(token: Self::Token, work: impl FnOnce() -> T) -> T;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
@@ -76,9 +76,9 @@ pub trait SimdFloat:
     /// `yes` where the mask is set, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// The smallest number of the row, none of which is NaN.
+    /// The smallest lane; none may be NaN.
     fn least(self) -> Self::Real;
-    /// The largest number of the row, none of which is NaN.
+    /// The largest lane; none may be NaN.
     fn greatest(self) -> Self::Real;
 
     /// The smaller number; `other` where either is NaN.
@@ -94,8 +94,7 @@ pub trait SimdFloat:
     }
 }
 
-/// A real number that kernels compute in: `f32` for speed, `f64` as the reference. By itself it is
-/// one lane.
+/// A real number type for kernels: `f32` for speed, `f64` as the reference. By itself it is a vector of one lane.
 pub trait Real:
     SimdFloat<Real = Self, Mask = bool, Token = ()> + Default + PartialOrd + Send + Sync + 'static
 {
@@ -109,19 +108,19 @@ pub trait Real:
     const ONE: Self;
     /// Its name in Rust.
     const NAME: &'static str;
-    /// Whether what its rounding may decide is traced again in double precision.
+    /// Whether results that rounding may have decided are computed again in double precision.
     const IS_FILTERED: bool;
 
     /// The nearest representable number.
     fn from_f64(value: f64) -> Self;
     /// The same number in double precision (exact).
     fn to_f64(self) -> f64;
-    /// The same number.
+    /// Converts a number from single precision (exact).
     #[inline(always)]
     fn from_single(number: f32) -> Self {
         Self::from_f64(number.into())
     }
-    /// The nearest whole number, of two the even one; for 0 ≤ self < 2²².
+    /// The nearest integer, ties to even; for 0 ≤ self < 2²².
     fn nearest(self) -> u32;
 }
 
@@ -145,8 +144,7 @@ macro_rules! real {
             }
             #[inline(always)]
             fn nearest(self) -> u32 {
-                // So far from zero, the last bit of the mantissa is worth one. A cast would not be
-                // done for many numbers in step.
+                // At this magnitude, the last bit of the mantissa is worth one. A cast would not be vectorised.
                 (self + (1_u64 << (<$type>::MANTISSA_DIGITS - 1)) as $type).to_bits() as u32
                     & 0x7F_FFFF
             }
@@ -254,21 +252,21 @@ impl Mask for bool {
     }
 }
 
-/// Does the work in a function of its own. Inlined in every place that calls it, the kernels would take half
-/// as long again to compile, where the instructions are known everywhere and nothing else keeps them apart.
+/// Runs the work as a function of its own. On targets whose instructions are enabled everywhere, nothing else keeps
+/// it from being inlined at every call, and the kernels would take half as long again to compile.
 #[inline(never)]
 fn apart<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The lanes of a vector register `V` of the processor kind `S`.
+/// A vector register `V` of the processor type `S`.
 #[derive(Clone, Copy, Debug)]
 pub struct Wide<S, V> {
     vector: V,
     processor: PhantomData<S>,
 }
 
-/// The truth values of a vector register.
+/// The mask of a vector register.
 #[derive(Clone, Copy, Debug)]
 pub struct WideMask<S, M> {
     mask: M,
@@ -344,7 +342,7 @@ where
     }
     #[inline(always)]
     fn load_singles(token: S, numbers: &[f32]) -> Self {
-        // In a loop, which is done for all in step where the compiler tries hard; in a closure it would not be.
+        // A loop, which is vectorised at high optimisation levels; in a closure, it would not be.
         let mut row = [V::Element::ZERO; MAX_LANES];
         for (own, &number) in row.iter_mut().zip(&numbers[..V::LEN]) {
             *own = V::Element::from_single(number);

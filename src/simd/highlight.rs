@@ -1,18 +1,18 @@
-//! The power of a Phong highlight, max(0, n·h)^p, without the rounding that a large p magnifies.
+//! The power of a Phong highlight, max(0, n·h)^p, without the rounding error that a large p magnifies.
 //!
-//! Everything is additions, multiplications, divisions and square roots, so that every lane of
-//! every machine gives the same bits. Errors are stated in levels of 255.
+//! It only uses additions, multiplications, divisions and square roots, so that every lane of every machine gives
+//! the same bits. Errors are stated in levels of 255.
 
 use super::{Real, SimdFloat, Vec3};
 
-/// Largest whole exponent that is raised by repeated squaring; its relative error is below p·u.
+/// The largest exponent whose whole part is computed by repeated squaring, with a relative error below p·u.
 const LARGEST_SQUARED: f64 = 256.0;
-/// Square roots that [`logarithm`] takes, and squarings that [`exponential`] takes.
+/// Number of square roots in [`logarithm`], and of squarings in [`exponential`].
 const HALVINGS: u32 = 6;
-/// Below this, an exponential is no level of anything.
+/// Exponents below this give far less than one level.
 const LOWEST: f64 = -30.0;
 
-/// A Phong exponent, made ready: how (n·h)^p is best computed depends on p alone.
+/// A Phong exponent, prepared: the best way to compute (n·h)^p depends only on p.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exponent {
     /// A small whole number: repeated squaring.
@@ -21,8 +21,8 @@ pub enum Exponent {
     Mixed(u32, f64),
     /// A large number: exp(p·log1p(-w)) with w = |n - h|²/2 = 1 - n·h.
     ///
-    /// n·h near 1 has lost what a large p needs, w has not: at p = 10⁶ the single-precision power
-    /// is off by 43 levels, this form by less than 0.1.
+    /// Rounding n·h near 1 loses digits that a large p needs, but w keeps them: at p = 10⁶, the single-precision
+    /// power is off by 43 levels, this form by less than 0.1.
     Large(f64),
 }
 
@@ -36,7 +36,7 @@ impl Exponent {
         }
     }
 
-    /// The plain power, whatever p: at 10⁶ it is off by 43 levels in single precision.
+    /// The plain power for any p: at 10⁶ it is off by 43 levels in single precision.
     pub fn power(p: f64) -> Self {
         if p.fract() == 0.0 {
             Self::Whole(p as u32)
@@ -45,19 +45,19 @@ impl Exponent {
         }
     }
 
-    /// |n - h| at which the highlight has fallen to e^-½, for one that may be smaller than a pixel.
+    /// The |n - h| at which the highlight has fallen to e^-½, if the highlight may be smaller than a pixel.
     pub fn size(self) -> Option<f64> {
         let p = match self {
             Self::Whole(p) => f64::from(p),
             Self::Mixed(whole, fraction) => f64::from(whole) + fraction,
             Self::Large(p) => p,
         };
-        // However it is computed: a formula must not decide where samples are.
+        // Depends on p alone, not on the variant: the formula must not influence where samples are taken.
         (p > LARGEST_SQUARED).then(|| 1.0 / p.sqrt())
     }
 
-    /// max(0, n·h)^p, where h is the unit vector along `half`. A `half` of no direction counts as 0.
-    /// Off by at most 0.5 levels for p ≤ 10⁶.
+    /// max(0, n·h)^p, where h is the unit vector along `half`; n·h counts as 0 if `half` has no direction. Off by at
+    /// most 0.5 levels for p ≤ 10⁶.
     #[inline(always)]
     pub fn highlight<L: SimdFloat>(self, n: Vec3<L>, half: Vec3<L>) -> L {
         let zero = n.x.like(L::Real::ZERO);
@@ -97,15 +97,16 @@ fn whole_power<L: SimdFloat>(base: L, mut exponent: u32) -> L {
     result
 }
 
-/// -log1p(-w) = 2·artanh(w / (2 - w)) by the first terms of the series: relative error below
-/// 10⁻¹¹ for w ≤ 0.15; above, at least 0.15, which is enough for a large power to vanish.
+/// -log1p(-w) = 2·artanh(w / (2 - w)) by the first terms of the series: relative error below 10⁻¹¹ for w ≤ 0.15.
+/// For larger w, it is at least 0.15, which suffices for a large power to vanish.
 #[inline(always)]
 fn fall<L: SimdFloat>(w: L) -> L {
     let z = w / (w.like_f64(2.0) - w);
     artanh(z) * z.like_f64(2.0)
 }
 
-/// log(x) = 2⁶·log(x^(1/2⁶)) for 10⁻¹² ≤ x ≤ 1, off by at most 2⁷u in single precision and by 10⁻⁹ in double; finite below.
+/// log(x) = 2⁶·log(x^(1/2⁶)) for 10⁻¹² ≤ x ≤ 1, off by at most 2⁷u in single precision and by 10⁻⁹ in double;
+/// finite for smaller x.
 #[inline(always)]
 fn logarithm<L: SimdFloat>(x: L) -> L {
     let one = x.like(L::Real::ONE);
@@ -154,7 +155,7 @@ mod tests {
 
     use super::*;
 
-    /// Worst difference to the exact power over half-vectors around the peak, in levels of 255.
+    /// Greatest difference from the exact power for half-vectors around the peak, in levels of 255.
     fn worst_level(p: f64, power: impl Fn(Vec3<f32>, Vec3<f32>) -> f32) -> f64 {
         let n = DVec3::new(0.36_f64, 0.48, 0.8);
         let across = DVec3::new(0.8_f64, -0.6, 0.0);

@@ -1,4 +1,4 @@
-//! Which vectors the processor has, found out at run time.
+//! The vector instruction sets of the processor, detected at run time.
 
 use fearless_simd::{Level as Vectors, Simd, f32x16, f64x8};
 
@@ -8,28 +8,28 @@ use super::{Real, SimdFloat};
 /// An instruction set of the processor.
 #[derive(Clone, Copy, Debug)]
 pub struct Level {
-    /// What `--lanes` calls it.
+    /// Its name in the option `--lanes`.
     pub name: &'static str,
-    /// `None` for one number at a time.
+    /// `None` for scalar code.
     vectors: Option<Vectors>,
 }
 
-/// Something to be done with lanes of any width.
+/// Work that can be done with lanes of any width.
 pub trait WithSimd<R: Real> {
-    /// What it gives.
+    /// The result.
     type Output;
-    /// Does it. Must be `#[inline(always)]`, as must be all that it calls in its inner loops:
-    /// what is not inlined does not know the processor's instructions.
+    /// Does the work. It must be `#[inline(always)]`, as must be all that it calls in inner loops: code that is not
+    /// inlined is not compiled for the processor's instructions.
     fn run<L: SimdFloat<Real = R>>(self, token: L::Token) -> Self::Output;
 }
 
-/// A real number that vectors exist of. All processors compute as many in step as the widest
-/// register that any of them has: what a processor does in several instructions is still handled
-/// as one packet, which is faster by an eighth to a quarter than packets of its own width.
+/// A real number type with vectors. All processors use as many lanes as the widest register of any of them: a
+/// packet that takes several instructions is still faster, by an eighth to a quarter, than packets of the
+/// processor's own width.
 pub trait SimdReal: Real {
-    /// How many are computed in step.
+    /// The number of lanes of its vectors.
     const LANES: usize;
-    /// Does the work with vectors of this number.
+    /// Does the work with vectors of this type.
     fn with_vectors<S: Simd, W: WithSimd<Self>>(simd: S, work: W) -> W::Output;
 }
 
@@ -49,19 +49,19 @@ vectored!(f32, f32x16, 16);
 vectored!(f64, f64x8, 8);
 
 impl Level {
-    /// The widest vectors of this processor.
+    /// The widest instruction set of this processor.
     pub fn widest() -> Self {
         Self::available().pop().unwrap_or(Self::SINGLE)
     }
 
-    /// One number at a time: everywhere.
+    /// Scalar code, for any processor.
     pub const SINGLE: Self = Self {
         name: "single",
         vectors: None,
     };
 
-    /// Every level that this processor has, narrowest first. SSE2 alone is none: kernels for it would be a third of
-    /// all, for processors of before 2011.
+    /// All levels that this processor has, narrowest first. There is none for SSE2 alone: its kernels would be a
+    /// third of all, for processors from before 2011.
     pub fn available() -> Vec<Self> {
         let has = Vectors::new();
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -83,7 +83,7 @@ impl Level {
         std::iter::once(Self::SINGLE).chain(found).collect()
     }
 
-    /// The level of this name, if this processor has it.
+    /// Returns the level with this name, if this processor has it.
     pub fn named(name: &str) -> Option<Self> {
         Self::available()
             .into_iter()
@@ -107,14 +107,14 @@ impl Level {
         }
     }
 
-    /// What `--stats` calls the lanes of this number, for example `f32×16 avx2`.
+    /// The name of the lanes for this type in the output of `--stats`, for example `f32×16 avx2`.
     pub fn lanes_of<R: SimdReal>(self) -> String {
         let width = self.vectors.map_or(1, |_| R::LANES);
         format!("{}×{width} {}", R::NAME, self.name)
     }
 }
 
-/// Does the work with the processor's instructions known to the compiler.
+/// Does the work, compiled for the processor's instructions.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 fn with_vectors<S: Simd, R: SimdReal, W: WithSimd<R>>(simd: S, work: W) -> W::Output {
     simd.vectorize(

@@ -1,7 +1,7 @@
-//! Arithmetic that would be true with no scene: the real number a kernel computes in, and its vectors.
+//! Arithmetic that knows nothing of scenes: the real number types that kernels compute in, and their vectors.
 //!
-//! Kernels are generic over [`SimdFloat`], so that one formula serves every width of the processor, the
-//! fast instance (`f32`) and the reference (`f64`). Nothing here fuses a multiplication with an addition or uses an approximate
+//! Kernels are generic over [`SimdFloat`], so that one formula serves every vector width, the fast version (`f32`)
+//! and the reference (`f64`). Nothing here fuses a multiplication with an addition or uses an approximate
 //! reciprocal: the same input gives the same bits on every machine.
 
 mod float;

@@ -26,7 +26,7 @@ impl<R> Vec3<R> {
 }
 
 impl<T> Vec3<T> {
-    /// What `change` makes of each component.
+    /// Applies `change` to each component.
     pub fn map<U>(self, change: impl Fn(T) -> U) -> Vec3<U> {
         Vec3::new(change(self.x), change(self.y), change(self.z))
     }
@@ -43,7 +43,7 @@ impl<L: SimdFloat> Vec3<L> {
         )
     }
 
-    /// A vector in as many lanes as this one has.
+    /// Broadcasts a vector to as many lanes as this one has.
     #[inline(always)]
     pub fn like(self, v: Vec3<L::Real>) -> Self {
         Self::broadcast(self.x.token(), v)
@@ -87,7 +87,7 @@ impl<L: SimdFloat> Vec3<L> {
         )
     }
 
-    /// Component-wise product, the way colours filter each other.
+    /// Component-wise product, as when a coloured surface filters light.
     #[inline(always)]
     pub fn filter(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
@@ -99,7 +99,7 @@ impl<L: SimdFloat> Vec3<L> {
         self.dot(self).sqrt()
     }
 
-    /// The smaller component of each pair.
+    /// The component-wise minimum.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         Self::new(
@@ -109,7 +109,7 @@ impl<L: SimdFloat> Vec3<L> {
         )
     }
 
-    /// The larger component of each pair.
+    /// The component-wise maximum.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self::new(
@@ -125,7 +125,7 @@ impl<L: SimdFloat> Vec3<L> {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
-    /// Every component at least `floor` and at most `ceiling`; NaN becomes `floor`.
+    /// Clamps every component to `floor` and `ceiling`; NaN becomes `floor`.
     #[inline(always)]
     pub fn clamp(self, floor: L, ceiling: L) -> Self {
         self.max(Self::splat(floor)).min(Self::splat(ceiling))

@@ -1,4 +1,4 @@
-//! The tiles that one thread traces, one after the other.
+//! Traces the tiles that one thread takes, one after the other.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering;
@@ -19,39 +19,39 @@ use crate::plan::{Plan, Region, Show};
 use crate::scene::Sampling;
 use crate::simd::{SimdFloat, SimdReal, WithSimd};
 
-/// A row of tiles, or a piece of one.
+/// A row of tiles, or a part of one.
 pub struct Band<'a, R> {
-    /// What is seen.
+    /// The scene and view to trace.
     pub plan: &'a Plan<R>,
-    /// Everything that can be seen.
+    /// Everything that camera rays may hit.
     pub seen: &'a Candidates,
     /// Side of a tile in pixels.
     pub tile: usize,
-    /// Whether packets look at squares.
+    /// Whether packets cover squares of pixels instead of rows.
     pub in_squares: bool,
-    /// The part of the picture that is traced, if not all of it is.
+    /// The part of the picture to trace; `None` for all of it.
     pub region: Option<Region>,
-    /// The columns of the picture.
+    /// The columns of the picture that it covers.
     pub columns: Range<usize>,
-    /// Its rows.
+    /// The rows of the picture that it covers.
     pub rows: Range<usize>,
-    /// The pixels there.
+    /// Receives the colours of its pixels.
     pub canvas: &'a mut dyn Canvas<R>,
-    /// Those that are traced.
+    /// Which of its pixels are traced.
     pub grid: Grid,
-    /// How they are sampled.
+    /// How the pixels are sampled.
     pub sampling: Sampling,
-    /// What its pixels are told by those beside them.
+    /// The messages that its pixels get from adjacent ones.
     pub messages: BandMessages<'a>,
-    /// What traces again what is in doubt.
+    /// Retraces doubtful samples in double precision, if they are retraced.
     pub reference: Option<&'a dyn Retracer>,
-    /// Memory of other bands of the plan.
+    /// Scratch memory shared with other bands of the plan.
     pub workspace_pool: &'a WorkspacePool,
-    /// Tells when to stop.
+    /// Says when to stop, and counts pixels.
     pub control: &'a RenderControl,
 }
 
-/// What a band works with.
+/// Scratch memory of a band.
 struct BandScratch<L: SimdFloat> {
     work: Workspace<L>,
     sampler: Sampler<L>,
@@ -173,7 +173,7 @@ impl<R: SimdReal> Band<'_, R> {
         Some(rays)
     }
 
-    /// Writes how many rays each pixel of a tile took.
+    /// Fills a tile with the colour for the mean number of rays that its pixels took.
     fn fill_with_heat(&mut self, tile: &Tile, rays: u64) {
         let count = self.grid.pixels(tile).count().max(1);
         let color = heat::<R>(rays as f64 / count as f64);
@@ -182,7 +182,7 @@ impl<R: SimdReal> Band<'_, R> {
         }
     }
 
-    /// Writes the colours of some pixels of a tile again, by row and column in it.
+    /// Overwrites some pixels of a tile, given by row and column in the tile.
     fn write(&mut self, tile: &Tile, pixels: &[[usize; 2]], colors: &TileColors<R>) {
         for &[row, column] in pixels {
             let index = row * colors.stride + column;

@@ -1,5 +1,5 @@
-//! Beams of rays, and what they can meet at all. Whatever a beam does not meet, no ray in it
-//! would have hit: leaving it out changes no pixel.
+//! Beams of rays, and what they can meet. No ray in a beam hits anything that the beam does not meet: leaving it
+//! out changes no pixel.
 
 use glam::DVec3;
 
@@ -7,22 +7,23 @@ use crate::plan::Balls;
 use crate::primitive::{Ball, BoundingBox, CAUTION, FAR_CAUTION, Ray};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// Rays that start within a ball and go in directions within a cone, up to some distance.
+/// Rays that start in a ball and go in directions within a cone, up to some distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam<R> {
     origin: Vec3<R>,
-    /// Radius of the ball that the rays start in.
+    /// Radius of the ball in which the rays start.
     spread: R,
     axis: Vec3<R>,
-    /// Sine of the angle between the axis and the outermost rays, which is below a right angle.
+    /// Sine of the angle between the axis and the outermost rays, which is less than 90°.
     sine: R,
     cosine: R,
-    /// How far the rays go.
+    /// Greatest length of the rays.
     reach: R,
 }
 
 impl<R: Real> Beam<R> {
-    /// From a point to all points of a ball; `None` where that is every direction.
+    /// Returns the beam from a point to all points of a ball; `None` if the point is in or nearly in the ball, so
+    /// that the rays would go in all directions.
     pub fn to_ball(from: DVec3, ball: &Ball) -> Option<Self> {
         let towards = ball.center - from;
         let length = towards.length();
@@ -38,8 +39,8 @@ impl<R: Real> Beam<R> {
         })
     }
 
-    /// From a ball, in directions that differ from `axis` by at most `chord` (the length of the
-    /// difference of unit vectors), endlessly; `None` where that is more than half of all.
+    /// Returns the beam of endless rays from a ball whose directions differ from `axis` by at most `chord` (the
+    /// length of the difference of unit vectors); `None` if these directions do not fit in less than a half-space.
     pub fn from_ball(ball: &Ball, axis: DVec3, chord: f64) -> Option<Self> {
         let chord = chord * (1.0 + CAUTION) + FAR_CAUTION;
         let cosine = 1.0 - chord * chord * 0.5;
@@ -53,8 +54,8 @@ impl<R: Real> Beam<R> {
         })
     }
 
-    /// The same rays with what is beside them: within this distance at their start, and so much more for each step that
-    /// they go; `None` where some of that may be behind all starts.
+    /// Returns the beam extended to everything within `by` of its rays at their start, and `spread` more per unit
+    /// of length; `None` if some of that might lie behind all starts.
     #[must_use]
     pub fn widened(self, by: R, spread: R) -> Option<Self> {
         // sin(a + b) ≤ sin a + b, cos(a + b) ≥ cos a - b.
@@ -66,12 +67,12 @@ impl<R: Real> Beam<R> {
         })
     }
 
-    /// How far a point within this distance of `center` is from where the rays start, at most.
+    /// Upper bound of the distance between the start of any ray and any point within `radius` of `center`.
     pub fn distance(&self, center: Vec3<R>, radius: R) -> R {
         (center - self.origin).length() + radius + self.spread
     }
 
-    /// Whether rays can come to the side of a plane that is not theirs: `normal` · p = `offset`.
+    /// Returns whether any ray may reach the far side of the plane `normal` · p = `offset`.
     pub fn crosses(&self, normal: Vec3<R>, offset: R) -> bool {
         let height = normal.dot(self.origin) - offset;
         let slack = R::from_f64(FAR_CAUTION) * (self.origin.max_abs() + height.abs());
@@ -82,8 +83,8 @@ impl<R: Real> Beam<R> {
         away.dot(self.axis) <= self.sine + R::from_f64(FAR_CAUTION)
     }
 
-    /// Which of the balls from `first` on it meets: those whose distance from the cone is at most
-    /// both radii.
+    /// Returns which balls, from `first` on, the beam meets: those whose distance from the cone is at most the sum
+    /// of both radii.
     #[inline(always)]
     fn meets<L: SimdFloat<Real = R>>(
         &self,
@@ -111,7 +112,8 @@ impl<R: Real> Beam<R> {
         is_met.bits()
     }
 
-    /// Lists the places of the balls that it meets, in order: at least of those from a place on.
+    /// Lists the indices of the balls that the beam meets, in ascending order, at least of those from index `from`
+    /// on.
     #[inline(always)]
     pub fn gather<L: SimdFloat<Real = R>>(
         &self,
@@ -131,7 +133,7 @@ impl<R: Real> Beam<R> {
     }
 }
 
-/// The box around points, lane by lane.
+/// The bounding box of points, for each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds<L> {
     low: Vec3<L>,
@@ -139,7 +141,7 @@ pub struct Bounds<L> {
 }
 
 impl<L: SimdFloat> Bounds<L> {
-    /// Around nothing.
+    /// An empty box.
     #[inline(always)]
     pub fn new(token: L::Token) -> Self {
         let infinity = L::splat(token, L::Real::INFINITY);
@@ -149,14 +151,14 @@ impl<L: SimdFloat> Bounds<L> {
         }
     }
 
-    /// Takes the points in, where the mask is set.
+    /// Extends the boxes to the points where the mask is set.
     #[inline(always)]
     pub fn add(&mut self, mask: L::Mask, point: Vec3<L>) {
         self.low = Vec3::select(mask, self.low.min(point), self.low);
         self.high = Vec3::select(mask, self.high.max(point), self.high);
     }
 
-    /// The box around all lanes; inside out if no point was taken in.
+    /// The box around the boxes of all lanes; its `low` is above its `high` if no point was added.
     #[inline(always)]
     pub fn around(&self) -> BoundingBox<L::Real> {
         BoundingBox {
@@ -169,7 +171,7 @@ impl<L: SimdFloat> Bounds<L> {
         }
     }
 
-    /// The ball around the box of all lanes; `None` if no point was taken in.
+    /// The ball around the box of all lanes; `None` if no point was added.
     #[inline(always)]
     pub fn ball(&self) -> Option<Ball> {
         let BoundingBox { low, high } = self.around();
@@ -182,7 +184,8 @@ impl<L: SimdFloat> Bounds<L> {
     }
 }
 
-/// The beam of rays, where each mask is set; `None` if they go everywhere, or there are none.
+/// Returns the beam around the rays of all packets where their masks are set; `None` if there are none, or their
+/// directions do not fit in less than a half-space.
 #[inline(always)]
 pub fn beam_around<L: SimdFloat>(
     token: L::Token,
@@ -212,7 +215,7 @@ mod tests {
         prop::array::uniform3(-scale..scale).prop_map(DVec3::from)
     }
 
-    /// A point of the ball: `inside` is drawn into it.
+    /// A point of the ball, by its offset from the centre in radii; offsets longer than 1 are shortened to 1.
     fn within(ball: &Ball, inside: DVec3) -> DVec3 {
         ball.center + inside * (ball.radius / inside.length().max(1.0))
     }

@@ -1,4 +1,5 @@
-//! The sides of the pixels of a tile: which of them may still tell something of the pixels beside them.
+//! The sides of the pixels of a tile: across which of them a sample may still reveal something to an adjacent
+//! pixel.
 
 use std::sync::atomic::Ordering;
 
@@ -7,35 +8,37 @@ use super::messages::{ABOVE, ALL, BELOW, EdgeMessages, LEFT, RIGHT};
 use super::thresholds::FINEST;
 use super::tile::Tile;
 
-/// What the pixels of a tile, and those around it, know of their sides.
+/// For the pixels of a tile and those around it, the sides from which they need no more messages.
 #[derive(Debug)]
 pub struct PixelSides {
-    /// The sides that have nothing more to tell, bit by bit, row by row, with a margin of the pixels around the tile.
+    /// For each pixel, the bits of the sides from which nothing more is to be learnt; row by row, with a margin of
+    /// the pixels around the tile.
     known: Vec<u8>,
-    /// Numbers from one row to the next.
+    /// Entries per row of `known`.
     stride: usize,
     /// Row and column of the first pixel of the tile.
     first: [usize; 2],
 }
 
-/// A side between two pixels.
+/// A side shared by two pixels.
 pub struct Side {
-    /// The points at its ends.
+    /// Its end points on the finest grid.
     pub ends: [[u16; 2]; 2],
-    /// The places of the pixels beside it that it may tell something, and which of their sides it is.
+    /// Indices of the two adjacent pixels, each with the bit of this side in it; `None` for one that needs no
+    /// messages from it.
     pub listening: [Option<(usize, u8)>; 2],
 }
 
-/// A pixel beside a side.
+/// A pixel adjacent to a side.
 pub enum Listener {
-    /// Of the tile, as a cell that nobody has looked at.
+    /// A pixel of the tile, as an unwatched cell, see [`Cell::unwatched`].
     Here(Cell),
-    /// Of another one, by its row and column in the picture.
+    /// A pixel of another tile, by its row and column in the picture.
     Elsewhere([usize; 2]),
 }
 
 impl PixelSides {
-    /// No pixels.
+    /// Creates a set without pixels.
     pub fn new() -> Self {
         Self {
             known: Vec::new(),
@@ -44,14 +47,15 @@ impl PixelSides {
         }
     }
 
-    /// Starts with what the pixels of a tile know. Those around it may know more than is known here.
+    /// Loads what the pixels of a tile know. Of the pixels around it nothing is loaded, though they may know
+    /// something.
     pub fn start(&mut self, tile: &Tile, messages: &EdgeMessages) {
         let (width, height) = (tile.width(), tile.rows.len());
         self.stride = width + 2;
         self.first = [tile.rows.start, tile.columns.start];
         self.known.clear();
         self.known.resize(self.stride * (height + 2), 0);
-        // Nobody is beyond the edges.
+        // There are no pixels to notify beyond the edges.
         let before = tile.rows.start.checked_sub(1);
         if !before.is_some_and(|row| messages.has(row)) {
             self.known[..self.stride].fill(ALL);
@@ -74,7 +78,7 @@ impl PixelSides {
         }
     }
 
-    /// Hands on what the pixels of the tile know.
+    /// Stores what the pixels of the tile know for later passes.
     pub fn finish(&self, tile: &Tile, messages: &EdgeMessages) {
         let rows = self.known.chunks_exact(self.stride).skip(1);
         for (row, known) in tile.rows.clone().zip(rows) {
@@ -87,7 +91,7 @@ impl PixelSides {
         }
     }
 
-    /// Notes of a cell, if it is a pixel, that some of its sides have nothing more to tell.
+    /// Notes that nothing more is to be learnt from some sides of a cell, if the cell is a pixel.
     #[inline(always)]
     pub fn note(&mut self, cell: &Cell, sides: u8) {
         if usize::from(cell.side) == FINEST {
@@ -96,7 +100,8 @@ impl PixelSides {
         }
     }
 
-    /// The side that a point is on; `None` for a corner, inside of a pixel, and where nobody listens.
+    /// Returns the pixel side that a grid point lies on; `None` for a pixel's corner, a point inside a pixel, and a
+    /// side from which neither pixel needs messages.
     #[inline(always)]
     pub fn side_of(&self, [x, y]: [u16; 2]) -> Option<Side> {
         let step = FINEST as u16;
@@ -128,7 +133,7 @@ impl PixelSides {
         })
     }
 
-    /// The pixel at a place; `None` before the first ones of the picture.
+    /// Returns the pixel at an index; `None` if it is above or left of the picture.
     pub fn listener(&self, index: usize) -> Option<Listener> {
         let pixel = self.pixel(index)?;
         Some(if self.is_inside(index) {
@@ -138,7 +143,8 @@ impl PixelSides {
         })
     }
 
-    /// A pixel of the tile, by its row and column in the picture, as a cell that nobody has looked at.
+    /// Returns a pixel of the tile, by its row and column in the picture, as an unwatched cell, see
+    /// [`Cell::unwatched`].
     pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
         let [top, left] = self.first;
         Cell::pixel(column - left, row - top, false).unwatched()
@@ -157,7 +163,7 @@ impl PixelSides {
         0 < row && row + 1 < rows && 0 < column && column + 1 < self.stride
     }
 
-    /// The place of the pixel below and behind a point.
+    /// Index of the pixel to the lower right of a grid point.
     #[inline(always)]
     fn place(&self, [x, y]: [u16; 2]) -> usize {
         (usize::from(y) / FINEST + 1) * self.stride + usize::from(x) / FINEST + 1
@@ -201,7 +207,7 @@ mod tests {
             listening(&borders, [2 * step + 1, step]),
             Some(vec![([1, 6], ABOVE)])
         );
-        // Beyond the tile are others, and beyond the picture there is nobody.
+        // Across the tile's edge are pixels of others; beyond the edge of the picture, there are none.
         let (left, _) = borders
             .side_of([0, 1])
             .and_then(|side| side.listening[0])

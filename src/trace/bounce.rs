@@ -1,4 +1,4 @@
-//! One depth of reflection: its packets, and what they bring back.
+//! One depth of reflection: its packets, and the results they return.
 
 use super::candidates::Candidates;
 use super::cull::LightCandidates;
@@ -14,29 +14,29 @@ use crate::simd::{MAX_LANES, Mask as _, SimdFloat, Vec3};
 
 /// One bounce: its packets, and what they can meet.
 pub struct Bounce<L: SimdFloat> {
-    /// Its rays.
+    /// The packets of rays.
     pub packets: Vec<Packet<L>>,
-    /// One for each packet, in bounces of mirrored rays.
+    /// Where each packet comes from, in bounces of mirrored rays.
     pub parents: Vec<ReflectionParent<L>>,
-    /// What is found out about edges.
+    /// What is to be found out about edges.
     pub edges_are: EdgeDetail,
-    /// One for each packet, where edges are noted.
+    /// One entry per packet, if edges are noted.
     pub edges: Vec<EdgeInfo<L>>,
-    /// One for each packet, where doubts are noted.
+    /// One entry per packet, if doubtful hits are noted.
     pub uncertainties: Vec<Uncertainty<L>>,
     /// What the rays can meet.
     pub seen: Candidates,
-    /// Where to start in the trees.
+    /// Where the rays enter the trees.
     pub entry_points: EntryPoints,
-    /// Those of them that may slip between samples.
+    /// Candidates that may slip between samples.
     pub thin: Candidates,
-    /// What can cast shadows where they meet something, light by light.
+    /// For each light, what can cast shadows on the hits.
     pub lights: Vec<LightCandidates>,
-    /// What tells edges, for each packet.
+    /// For each ray of a packet, a number that changes across edges.
     pub signatures: Vec<[u32; MAX_LANES]>,
-    /// Which of the samples the rays are, if they were put in another order.
+    /// Which sample each ray belongs to, if they were reordered.
     pub order: Order<L::Real>,
-    /// Memory for the materials of a packet.
+    /// Scratch memory for the materials of a packet.
     pub mixed: MixedMaterials<L>,
 }
 
@@ -45,7 +45,7 @@ impl<L: SimdFloat> Bounce<L> {
     pub fn new(plan: &Plan<L::Real>) -> Self {
         let candidates_of = |light| {
             let casters = Candidates::all_casting(plan, light);
-            // Without culling nobody looks for the narrow ones among them.
+            // Without culling, nothing picks out the thin ones: all of them count.
             let thin = match plan.screen {
                 Some(_) => Candidates::default(),
                 None => casters.clone(),
@@ -73,7 +73,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Forgets the packets.
+    /// Removes all packets.
     pub fn clear(&mut self) {
         self.packets.clear();
         self.parents.clear();
@@ -81,12 +81,12 @@ impl<L: SimdFloat> Bounce<L> {
         self.uncertainties.clear();
     }
 
-    /// Whether there are no packets.
+    /// Returns whether there are no packets.
     pub fn is_empty(&self) -> bool {
         self.packets.is_empty()
     }
 
-    /// Adds the colours that the mirrored rays brought back.
+    /// Adds the colours that the mirrored rays returned, and their doubts.
     #[inline(always)]
     pub fn take_colors(&mut self, mirrored: &Self) {
         for (packet, parent) in mirrored.packets.iter().zip(&mirrored.parents) {
@@ -100,7 +100,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Adds what the mirrored rays know of their edges.
+    /// Merges the edge information of the mirrored rays.
     #[inline(always)]
     pub fn take_edges(&mut self, mirrored: &Self) {
         for (index, edge) in mirrored.edges.iter().enumerate() {
@@ -119,7 +119,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Notes what each ray has hit, and which lights shine on it.
+    /// Computes the signatures: what each ray has hit, and which lights shine on it.
     #[inline(always)]
     pub fn sign(&mut self, plan: &Plan<L::Real>) {
         self.signatures.clear();
@@ -128,13 +128,13 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Lists which of so many samples are in doubt.
+    /// Lists which of the first `count` samples are in doubt.
     pub fn list_doubtful(&self, count: usize, places: &mut Vec<u32>) {
         let notes = (&self.packets[..], &self.uncertainties[..]);
         list_doubtful(notes, &self.order.samples, count, places);
     }
 
-    /// Writes what was seen, sample by sample; `unsorted` is memory for what is in another order.
+    /// Writes the results, sample by sample; `unsorted` is scratch memory, used if the rays were reordered.
     #[inline(always)]
     pub fn store(
         &self,

@@ -1,51 +1,51 @@
-//! The rays of a packet as one: boxes that no ray of it can meet are left out, sixteen at a time.
+//! The rays of a packet as one: boxes that none of its rays can meet are skipped, sixteen at a time.
 
 use super::thin_margin::ThinMargin;
 use crate::plan::{GROUP, Node};
 use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, inverse, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
-/// The length of a way in a box, in its longest side: the root of 3, and a little more.
+/// Length of the longest line in a box, in units of its longest side: √3, rounded up.
 const LONGEST: f64 = 1.75;
-/// How many times as far as a start a ray may be rounded that sets out to a point.
+/// Rounding error of a ray that is aimed at a point, in units of the rounding error of its start.
 const ROUNDED_TWICE: f64 = 2.0;
 
-/// Rays, and what all of them have in common along each axis.
+/// Rays, and the intervals that contain them along each axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Bundle<L: SimdFloat> {
-    /// Where there is a ray.
+    /// The lanes that have a ray.
     pub active: L::Mask,
-    /// The origins, with the roundings towards lower and higher coordinates.
+    /// The origins, shifted by their rounding errors towards lower and higher coordinates.
     origins: [Vec3<L>; 2],
-    /// One over the directions.
+    /// The reciprocals of the directions.
     inverse: Vec3<L>,
-    /// What the rays have in common.
+    /// The intervals that contain all of the rays.
     shaft: Shaft<L::Real>,
-    /// Whether boxes that no ray meets are left out.
+    /// Whether boxes that no ray meets are skipped.
     is_boxed: bool,
 }
 
-/// What rays have in common along each axis: where they start, and which way they go.
+/// For each axis, the intervals that contain the starts of all rays and the reciprocals of their directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft<R> {
     axes: [ShaftAxis<R>; 3],
 }
 
-/// What the rays have in common along an axis.
+/// The intervals along one axis.
 #[derive(Clone, Copy, Debug)]
 struct ShaftAxis<R> {
-    /// 0 where all rays go upwards, which meet the lower plane of a box first; 1 downwards; `None` where
-    /// they go either way.
+    /// 0 if all rays go upwards and meet the lower plane of a box first; 1 if all go downwards; `None` if they go
+    /// both ways.
     first: Option<usize>,
-    /// What the planes that are met first and last are measured from.
+    /// Origins from which the planes met first and last are measured.
     origins: [R; 2],
-    /// Least and greatest of one over the directions.
+    /// Least and greatest reciprocal of the directions.
     inverse: [R; 2],
 }
 
 impl<L: SimdFloat> Bundle<L> {
-    /// The rays where the mask is set, among things whose coordinates are at most `reach`. Boxes that a ray may meet
-    /// by so much blur are met: whether it is in doubt does not depend on the rays beside it.
+    /// The rays where the mask is set, among things whose coordinates are at most `reach`. Boxes that a ray only
+    /// meets within its blur count as met: whether it is in doubt does not depend on the other rays of its packet.
     #[inline(always)]
     pub fn new(rays: &Ray<L>, blur: &Blur<L>, active: L::Mask, reach: L::Real) -> Self {
         let like = rays.origin.x;
@@ -54,8 +54,8 @@ impl<L: SimdFloat> Bundle<L> {
         Self::between(rays.origin, slack, rays.direction, active)
     }
 
-    /// The ways from a point to where the rays start, all of length 1; the rays must go there. What they have in
-    /// common is a pyramid, and not what two boxes span.
+    /// The paths from a point to the starts of the rays, all parametrised to length 1; the rays must go to that
+    /// point. They are contained in a pyramid, instead of the space that two boxes span.
     #[inline(always)]
     pub fn from_point(
         point: Vec3<L::Real>,
@@ -66,11 +66,11 @@ impl<L: SimdFloat> Bundle<L> {
         let origin = rays.origin.like(point);
         let ways = rays.origin - origin;
         let far = origin.x.like(reach + point.max_abs());
-        // Nothing is farther from the point than this; where rays start that come from farther away, they are off by
-        // more than they are here.
+        // Nothing is farther from the point than this. Rays that start farther away are off by more there than
+        // within this distance.
         let deepest = far * far.like_f64(LONGEST);
         let size = (rays.origin.max_abs() + far).min(deepest + deepest);
-        // A ray passes the point as far off as its start and its direction are rounded.
+        // A ray misses the point by the rounding errors of its start and its direction.
         let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
         let from = (ways.length() - deepest).max(far.like(L::Real::ZERO));
         let slack = rounded + aside(blur, from, size);
@@ -97,7 +97,7 @@ impl<L: SimdFloat> Bundle<L> {
         }
     }
 
-    /// From now on every box is met.
+    /// From now on, counts every box as met.
     #[inline(always)]
     pub fn meet_all(&mut self) {
         self.is_boxed = false;
@@ -106,7 +106,7 @@ impl<L: SimdFloat> Bundle<L> {
         }
     }
 
-    /// The same rays as seen from elsewhere, among what was in reach before.
+    /// The same rays in coordinates relative to `centre`; the margin for rounding stays that of the original ones.
     #[inline(always)]
     #[must_use]
     pub fn seen_from(&self, centre: Vec3<L::Real>) -> Self {
@@ -119,14 +119,14 @@ impl<L: SimdFloat> Bundle<L> {
         }
     }
 
-    /// What the rays have in common.
+    /// The intervals that contain all of the rays.
     #[inline(always)]
     pub fn shaft(&self) -> &Shaft<L::Real> {
         &self.shaft
     }
 
-    /// Which of the rays meet the box at `index` of a node, or pass within `margin` of its sides, before
-    /// their own `reach`: slabs, as Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
+    /// Returns which rays meet the box at `index` of a node, or pass within `margin` of it, before their own
+    /// `reach`, by the slab method of Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
     #[inline(always)]
     pub fn each_meets(&self, node: &Node, index: usize, reach: L, margin: L::Real) -> L::Mask {
         let mut near = reach.like(L::Real::ZERO);
@@ -141,7 +141,7 @@ impl<L: SimdFloat> Bundle<L> {
             let low = L::Real::from_single(node.planes[0][axis][index]);
             let high = L::Real::from_single(node.planes[1][axis][index]);
             let (low, high) = (reach.like(low - margin), reach.like(high + margin));
-            // The origin is moved away from either plane, so that the box grows.
+            // The origin is moved away from either plane, which enlarges the box.
             let (low, high) = ((low - above) * inverse, (high - below) * inverse);
             near = near.max(low.min(high));
             far = far.min(low.max(high));
@@ -155,7 +155,8 @@ impl<L: SimdFloat> Bundle<L> {
 }
 
 impl<L: SimdFloat> Bundle<L> {
-    /// Which boxes of a node some of these rays meet before their own `reach`, and from where on; bit by bit.
+    /// Returns which boxes of a node any of the rays in `lanes` meets before its own `reach`, as bits; sets `nears`
+    /// to the least distances at which they are entered.
     #[inline(always)]
     pub fn few_meet(
         &self,
@@ -184,7 +185,7 @@ impl<L: SimdFloat> Bundle<L> {
         bits & node.filled()
     }
 
-    /// What one ray has in common with itself.
+    /// The shaft of a single ray.
     #[inline(always)]
     fn ray(&self, lane: usize) -> Shaft<L::Real> {
         let [below, above] = &self.origins;
@@ -203,7 +204,7 @@ impl<L: SimdFloat> Bundle<L> {
 }
 
 impl<R: Real> Shaft<R> {
-    /// From somewhere in a box, in directions within another one.
+    /// The shaft of rays that start in one box and whose directions lie in another.
     pub fn of(origins: &BoundingBox<R>, directions: &BoundingBox<R>) -> Self {
         let (lows, highs) = (origins.low.to_array(), origins.high.to_array());
         let (froms, tos) = (directions.low.to_array(), directions.high.to_array());
@@ -213,7 +214,7 @@ impl<R: Real> Shaft<R> {
         }
     }
 
-    /// The same as seen from elsewhere.
+    /// The same shaft in coordinates relative to `centre`.
     #[inline(always)]
     #[must_use]
     pub fn seen_from(&self, centre: Vec3<R>) -> Self {
@@ -224,7 +225,8 @@ impl<R: Real> Shaft<R> {
         moved
     }
 
-    /// Which boxes of a node some ray may meet before `reach`, and from where on; bit by bit.
+    /// Returns which boxes of a node any ray may meet before `reach`, as bits; sets `nears` to the least distances
+    /// at which they may be entered.
     #[inline(always)]
     pub fn meets<L: SimdFloat<Real = R>>(
         &self,
@@ -242,8 +244,8 @@ impl<R: Real> Shaft<R> {
         bits & node.filled()
     }
 
-    /// Which boxes of a node that hold something thin some ray may come close to before `reach`, and how
-    /// wide a pixel is there at most.
+    /// Returns which boxes of a node hold something thin and may be passed closely by a ray before `reach`, as
+    /// bits; sets `widths` to the greatest width of a pixel at each box.
     #[inline(always)]
     pub fn grazes<L: SimdFloat<Real = R>>(
         &self,
@@ -272,7 +274,7 @@ impl<R: Real> Shaft<R> {
         bits & node.filled()
     }
 
-    /// How far the farthest corner of each box is from where a ray starts, at most.
+    /// Upper bound of the distance from the start of any ray to the farthest corner of each box.
     #[inline(always)]
     fn distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
         let mut sum = L::splat(token, R::ZERO);
@@ -287,7 +289,7 @@ impl<R: Real> Shaft<R> {
         sum
     }
 
-    /// How far each box is from where a ray starts, at least: along one axis.
+    /// Lower bound of the distance from the start of any ray to each box: the greatest along one axis.
     #[inline(always)]
     fn gap<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
         let mut gap = L::splat(token, R::ZERO);
@@ -302,8 +304,8 @@ impl<R: Real> Shaft<R> {
         gap
     }
 
-    /// The boxes of a node from `from` on as slabs between planes: where the first of the rays may enter
-    /// each, and whether any may meet it before `reach` and within `margin` of it.
+    /// Intersects boxes of a node, from index `from` on, as slabs between planes: returns where the first ray may
+    /// enter each, and whether any may meet it, or pass within `margin`, before `reach`.
     #[inline(always)]
     fn slabs<L: SimdFloat<Real = R>>(
         &self,
@@ -346,7 +348,7 @@ impl<R: Real> ShaftAxis<R> {
         )
     }
 
-    /// Between origins, in directions between others.
+    /// The intervals of rays that start between these origins, and have directions between `from` and `to`.
     fn of(origins: [R; 2], [from, to]: [R; 2]) -> Self {
         let inverse = if from > R::ZERO || to < R::ZERO {
             let (one, other) = (R::ONE / to, R::ONE / from);
@@ -382,11 +384,12 @@ impl<R: Real> ShaftAxis<R> {
     }
 }
 
-/// How far beside rays boxes are met that are no nearer than `from`, where no coordinate is larger than this.
+/// How far beside the rays a box still counts as met, if it is no nearer than `from` and no coordinate exceeds
+/// `size`.
 #[inline(always)]
 pub fn aside<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
     if L::Real::IS_FILTERED {
-        // As far as doubts go, along the longest way through the scene.
+        // As much as hits may be in doubt, along the longest path through the scene.
         let longest = from + size * size.like_f64(LONGEST);
         blur.between(from, longest) * size.like_f64(1.0 + CAUTION)
     } else {
@@ -394,13 +397,13 @@ pub fn aside<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
     }
 }
 
-/// The smallest number where the mask is set.
+/// The smallest number where the mask is set; infinity if it is set nowhere.
 #[inline(always)]
 fn least<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
     L::select(active, numbers, numbers.like(L::Real::INFINITY)).least()
 }
 
-/// The largest number where the mask is set.
+/// The largest number where the mask is set; minus infinity if it is set nowhere.
 #[inline(always)]
 fn greatest<L: SimdFloat>(active: L::Mask, numbers: L) -> L::Real {
     L::select(active, numbers, numbers.like(-L::Real::INFINITY)).greatest()

@@ -1,4 +1,4 @@
-//! The primitives that are worth testing.
+//! The primitives that rays are tested against.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,22 +11,22 @@ use crate::simd::{Real, Vec3};
 /// The primitives that are worth testing.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
-    /// For each kind, indices into the plan's list.
+    /// For each kind, indices into the plan's primitives of that kind.
     lists: [Vec<u32>; KINDS],
-    /// Whether something of the plan's geometry may be among them.
+    /// Whether the plan's geometry is to be tested as well.
     pub has_geometry: bool,
 }
 
-/// What rays are tested against: lists, and trees from these nodes on.
+/// What rays are tested against: lists of primitives, and trees from their entry points on.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a, R> {
-    /// The lists, and whether there is anything in the trees.
+    /// The listed primitives, and whether the trees are tested at all.
     pub candidates: &'a Candidates,
-    /// Where to start in the trees.
+    /// Where the rays enter the trees.
     pub entry_points: &'a EntryPoints,
-    /// The light that the rays go to, if they do.
+    /// The light that shadow rays go to, if boxes may be tested along the paths from there.
     pub light: Option<&'a PointLight<R>>,
-    /// For each mesh, the faces that are not tested, if there are any.
+    /// For each mesh, the faces to skip, if there are any.
     pub culled_faces: &'a [Option<Arc<CulledFaces>>],
 }
 
@@ -44,12 +44,12 @@ pub enum Span {
 pub enum Omit<'a> {
     /// Nothing.
     Nothing,
-    /// The markers of lights, and triangles whose flag is set.
+    /// The markers of lights, and the triangles whose flag is set.
     MarkersAndFaces(&'a [bool]),
 }
 
 impl Candidates {
-    /// Everything there is, markers included.
+    /// Everything, markers included.
     pub fn all<R: Real>(plan: &Plan<R>) -> Self {
         Self {
             lists: plan
@@ -60,7 +60,7 @@ impl Candidates {
         }
     }
 
-    /// Everything that camera rays may meet first.
+    /// Everything that camera rays may hit.
     pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
         let mut all = Self::all(plan);
         all.lists[Kind::Triangle as usize]
@@ -69,9 +69,9 @@ impl Candidates {
         all
     }
 
-    /// Everything that casts shadows from a light.
+    /// Everything that may cast shadows from a light.
     pub fn all_casting<R: Real>(plan: &Plan<R>, light: &PointLight<R>) -> Self {
-        // Each light has such a list in each thread: none has room for what is not in it.
+        // Each thread has such a list per light, so no list should have capacity for primitives that are not in it.
         let mut kinds = plan.primitives.counts().map(|count| 0..count as u32);
         kinds[Kind::Sphere as usize].start = plan.markers as u32;
         if !plan.planes_cast {
@@ -85,7 +85,7 @@ impl Candidates {
         all
     }
 
-    /// Leaves out the primitives of these numbers.
+    /// Removes the primitives with these numbers.
     pub fn leave_out<R: Real>(&mut self, plan: &Plan<R>, numbers: &[usize]) {
         if numbers.is_empty() {
             return;
@@ -95,18 +95,18 @@ impl Candidates {
         }
     }
 
-    /// Indices of one kind.
+    /// The indices of one kind.
     #[inline(always)]
     pub fn of(&self, kind: Kind) -> &[u32] {
         &self.lists[kind as usize]
     }
 
-    /// Indices of the planes, to be changed.
+    /// The indices of the planes, for changes.
     pub fn planes_mut(&mut self) -> &mut Vec<u32> {
         &mut self.lists[Kind::Plane as usize]
     }
 
-    /// Forgets all.
+    /// Removes everything.
     pub fn clear(&mut self) {
         for list in &mut self.lists {
             list.clear();
@@ -114,12 +114,13 @@ impl Candidates {
         self.has_geometry = false;
     }
 
-    /// Whether there is nothing to test.
+    /// Returns whether there is nothing to test.
     pub fn is_empty(&self) -> bool {
         !self.has_geometry && self.lists.iter().all(Vec::is_empty)
     }
 
-    /// How many of them may have outlines of their own, see [`Primitive::has_outline`]: none, one, or two for more.
+    /// Returns how many candidates may have outlines of their own, see [`Primitive::has_outline`]: 0, 1, or 2 for
+    /// two or more.
     pub fn outlines<R: Real>(&self, plan: &Plan<R>) -> usize {
         let all = &plan.primitives.triangles;
         let triangles = self.of(Kind::Triangle).iter();
@@ -133,7 +134,7 @@ impl Candidates {
         (round + loose.take(2).count()).min(2)
     }
 
-    /// Becomes those of `from` that can be seen in these columns (or rows).
+    /// Becomes the candidates of `from` that can be seen in these columns (or rows) of pixels.
     pub fn keep_seen<R: Real>(
         &mut self,
         from: &Self,
@@ -153,7 +154,7 @@ impl Candidates {
         };
         for ((list, from), rectangles) in self.lists.iter_mut().zip(&from.lists).zip(screen) {
             list.clear();
-            // What never ends has no rectangle.
+            // Endless primitives have no rectangles.
             if rectangles.is_empty() {
                 list.extend_from_slice(from);
             } else {
@@ -167,8 +168,8 @@ impl Candidates {
             from.has_geometry && (plan.outline.is_empty() || plan.outline.iter().any(meets));
     }
 
-    /// Becomes those of `from` that are narrower than `width`, which is given the primitive's place and
-    /// reach.
+    /// Becomes the candidates of `from` that are thinner than `width`, which is called with a point of the
+    /// primitive and how far it reaches from there.
     pub fn keep_narrow<R: Real>(
         &mut self,
         from: &Self,
@@ -187,7 +188,7 @@ impl Candidates {
         });
     }
 
-    /// Becomes the primitives in these of the plan's balls, kind by kind; no geometry.
+    /// Becomes the primitives in these balls of the plan, sorted by kind and without those to omit; no geometry.
     pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, balls: &[u32], omit: Omit) {
         self.clear();
         let firsts = plan.primitives.firsts();

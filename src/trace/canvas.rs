@@ -1,5 +1,5 @@
-//! Where the colours of pixels go: who traces them need not know what they are made of, and is compiled once for whatever
-//! that is.
+//! The destination of pixel colours. The code that traces does not know the pixel format, so that it is compiled
+//! once for all formats.
 
 use std::ops::Range;
 
@@ -7,26 +7,26 @@ use super::tile::{Grid, Pixel, Tile};
 use crate::plan::Region;
 use crate::simd::{Level, SimdFloat, SimdReal, WithSimd};
 
-/// Takes the colours of the pixels of a piece of the picture.
+/// Receives the colours of the pixels of a part of the picture.
 pub trait Canvas<R> {
-    /// Takes those of all pixels of a tile, row by row, `stride` apart from row to row.
+    /// Sets all pixels of a tile, row by row; `stride` is the distance between the rows of `channels`.
     fn fill(&mut self, tile: &Tile, stride: usize, channels: [&[R]; 3]);
 
-    /// Takes those of the pixels of a tile that a pass takes, one after the other.
+    /// Sets the pixels of a tile that belong to a pass, in their order.
     fn scatter(&mut self, tile: &Tile, grid: Grid, channels: [&[R]; 3]);
 
-    /// Takes that of one pixel.
+    /// Sets one pixel.
     fn set(&mut self, column: usize, row: usize, color: [R; 3]);
 }
 
-/// The pixels of a piece, all of one kind.
+/// The pixels of a part of the picture, all in one format.
 #[derive(Debug)]
 pub struct Pixels<'a, P> {
-    /// Where it is in the picture.
+    /// The part of the picture.
     pub place: Region,
-    /// Row by row.
+    /// The rows of its pixels.
     pub rows: Vec<&'a mut [P]>,
-    /// Which vectors colours become pixels in.
+    /// Instruction set with which colours are converted to pixels.
     pub level: Level,
 }
 
@@ -58,7 +58,7 @@ impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     }
 }
 
-/// The pixels in some columns of rows, which become these colours.
+/// Columns of rows of pixels, and the colours that they are set to.
 struct Filled<'a, 'b, R, P> {
     rows: &'a mut [&'b mut [P]],
     columns: Range<usize>,
@@ -69,7 +69,7 @@ struct Filled<'a, 'b, R, P> {
 impl<R: SimdReal, P: Pixel> WithSimd<R> for Filled<'_, '_, R, P> {
     type Output = ();
 
-    /// In no lanes by itself: the compiler makes many pixels in step with the instructions that it knows here.
+    /// Uses no lanes explicitly: the compiler vectorises the loop with the instructions that are enabled here.
     #[inline(always)]
     fn run<L: SimdFloat<Real = R>>(self, _: L::Token) {
         let [red, green, blue] = self.channels;

@@ -1,4 +1,4 @@
-//! Squares between samples, pixels and parts of them.
+//! Cells: squares between samples, which are pixels or parts of them.
 
 use super::samples::EdgeDetail;
 use super::thresholds::FINEST;
@@ -8,24 +8,24 @@ use crate::simd::Real;
 /// A square between samples: its upper left corner on the finest grid, its side, and its samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
-    /// Columns of the finest grid from the left.
+    /// Steps of the finest grid from the left edge of the tile.
     pub x: u16,
-    /// Rows of the finest grid from the top.
+    /// Steps of the finest grid from the upper edge of the tile.
     pub y: u16,
-    /// Steps of the finest grid.
+    /// Length of its side in steps of the finest grid.
     pub side: u16,
     /// What was looked for at its corners, or at those of the cell that it is a part of.
     pub looked: EdgeDetail,
-    /// Whether it is, or is a part of, one where lights may swap, see [`super::shadows`].
+    /// Whether lights may swap in it or in a cell that it is a part of, see [`super::shadows`].
     pub swaps_lights: bool,
-    /// Whether it may show a face of a mesh that no corner is on, or light between two of them.
+    /// Whether it may show a mesh face that no corner is on, or light between two such faces.
     pub may_hide_face: bool,
-    /// The samples at its corners: upper left and right, lower left and right.
+    /// Indices of the samples at its corners: upper left and right, lower left and right.
     pub corners: [u32; 4],
 }
 
 impl Cell {
-    /// A pixel of a tile, whose samples are not known.
+    /// A pixel of a tile, whose samples are not known yet.
     pub fn pixel(column: usize, row: usize, may_hide_face: bool) -> Self {
         Self {
             x: (column * FINEST) as u16,
@@ -38,7 +38,8 @@ impl Cell {
         }
     }
 
-    /// The same, about which nobody has looked what may slip between samples, or ends near them.
+    /// The same cell, at whose corners nothing but signatures was looked for: neither what may slip between
+    /// samples, nor the shadows and faces that end near them.
     pub fn unwatched(self) -> Self {
         Self {
             looked: EdgeDetail::Signed,
@@ -46,12 +47,12 @@ impl Cell {
         }
     }
 
-    /// Row and column of the pixel that it is in.
+    /// Row and column of the pixel that contains it.
     pub fn row_and_column(&self) -> [usize; 2] {
         [self.y, self.x].map(|place| usize::from(place) / FINEST)
     }
 
-    /// The pixel that it is in, `stride` from one row of them to the next.
+    /// Index of the pixel that contains it, with `stride` pixels per row.
     #[inline(always)]
     pub fn pixel_in(&self, stride: usize) -> usize {
         self.y as usize / FINEST * stride + self.x as usize / FINEST
@@ -64,13 +65,13 @@ impl Cell {
         [(left, top), (right, top), (left, bottom), (right, bottom)]
     }
 
-    /// Its side in pixels.
+    /// Length of its side in pixels.
     #[inline(always)]
     pub fn width(&self) -> f64 {
         f64::from(self.side) / FINEST as f64
     }
 
-    /// Adds its colour, red, green and blue first, to its pixel, by its area.
+    /// Adds its colour (red, green, blue, and a number that is ignored), weighted by its area, to its pixel.
     #[inline(always)]
     pub fn add_color<R: Real>(&self, color: [R; 4], colors: &mut TileColors<R>) {
         let pixel = self.pixel_in(colors.stride);

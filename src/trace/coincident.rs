@@ -1,5 +1,5 @@
-//! What is seen where several things fill one surface: which of them is nearer, rounding decides; which of them is
-//! met there, their outlines; and which of these is seen, their order.
+//! Hits on several objects that fill the same surface. Rounding would decide which of them is nearest; instead, of
+//! those whose outlines contain the hit, the one that comes first in the order of objects is shown.
 
 use std::ops::Range;
 
@@ -13,12 +13,12 @@ use crate::primitive::{Blur, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// Up to so many times as far apart they are looked for along the rays: as far as they are at 89 degrees from the
-/// normal.
+/// Coincident surfaces are searched for along the rays up to this many times the distance allowed between them:
+/// that is how far apart they are along a ray at 89 degrees from the normal.
 const SLANT: f64 = 64.0;
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// The nearest, but for what lies in its surface and is seen there.
+    /// Returns the nearest hits, replaced where another object in the same surface is to be shown.
     #[inline(never)]
     pub fn settled(
         self,
@@ -73,7 +73,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         )
     }
 
-    /// Tests those of some objects that stand in no tree.
+    /// Tests those of the objects that are in no tree.
     #[inline(always)]
     fn meet_all(self, over: &Others, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
         for number in over.listed() {
@@ -87,17 +87,17 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// Looks for the first of some objects that is met where something was.
+/// Looks for the first of some objects that is hit where another one was.
 struct CoincidentTest<'a, L: SimdFloat> {
     methods: &'a Methods,
     over: &'a Others,
     met: Nearest<L>,
-    /// How far from there it may be across its surface.
+    /// Greatest distance between the two hits across the surface.
     apart: L,
-    /// Where it is looked for.
+    /// The lanes in which it is looked for.
     here: L::Mask,
     found: Nearest<L>,
-    /// Its place among the objects; infinity while nothing is found.
+    /// Its place in the order of objects; infinity while nothing is found.
     rank: L,
 }
 
@@ -135,7 +135,7 @@ impl<L: SimdFloat> Test<L> for CoincidentTest<'_, L> {
     }
 }
 
-/// A primitive that stands in no tree, tested.
+/// Tests a primitive that is in no tree.
 struct TestListed<'a, 'b, L: SimdFloat> {
     paths: &'a Paths<L>,
     number: usize,

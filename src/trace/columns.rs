@@ -1,20 +1,20 @@
-//! Vectors of single things, put together lane by lane.
+//! Vectors that are assembled lane by lane.
 
 use crate::primitive::{CornerNormals, Curved, PackedTriangle};
 use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
-/// x, y and z of vectors, one in each lane.
+/// The components x, y and z of one vector per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<R>([[R; MAX_LANES]; 3]);
 
 impl<R: Real> Columns<R> {
-    /// Zeros.
+    /// Zero vectors.
     #[inline(always)]
     pub fn new() -> Self {
         Self([[R::ZERO; MAX_LANES]; 3])
     }
 
-    /// Puts a vector into a lane.
+    /// Sets the vector of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, vector: Vec3<R>) {
         for (column, part) in self.0.iter_mut().zip(vector.to_array()) {
@@ -22,7 +22,7 @@ impl<R: Real> Columns<R> {
         }
     }
 
-    /// The vectors, in step.
+    /// Returns the vectors of all lanes.
     #[inline(always)]
     pub fn load<L: SimdFloat<Real = R>>(&self, token: L::Token) -> Vec3<L> {
         let [x, y, z] = &self.0;
@@ -30,7 +30,7 @@ impl<R: Real> Columns<R> {
     }
 }
 
-/// What is needed of faces that are shaded as if they were curved.
+/// The data of smoothly shaded faces, one per lane, that their hits need.
 pub struct CurvedColumns<R> {
     corners: [Columns<R>; 3],
     normals: [Columns<R>; 3],
@@ -38,7 +38,7 @@ pub struct CurvedColumns<R> {
 }
 
 impl<R: Real> CurvedColumns<R> {
-    /// Zeros.
+    /// All zeros.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
@@ -48,7 +48,7 @@ impl<R: Real> CurvedColumns<R> {
         }
     }
 
-    /// Puts a face into a lane.
+    /// Sets the face of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, triangle: &PackedTriangle<R>, smooth: &CornerNormals<R>) {
         for index in 0..3 {
@@ -58,7 +58,7 @@ impl<R: Real> CurvedColumns<R> {
         self.curvature[lane] = smooth.curvature;
     }
 
-    /// The faces, in step.
+    /// Returns the faces of all lanes.
     #[inline(always)]
     pub fn load<L: SimdFloat<Real = R>>(&self, token: L::Token) -> Curved<L> {
         let [a, b, c] = &self.corners;

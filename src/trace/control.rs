@@ -1,44 +1,44 @@
-//! How a trace is watched, stopped, and made to wait.
+//! Watching, stopping and pausing a trace.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What a running trace and its caller tell each other.
+/// What a running trace and its caller share.
 #[derive(Debug, Default)]
 pub struct RenderControl {
-    /// Whether the trace is to end within a part of a tile.
+    /// Whether the trace shall stop, within a part of a tile.
     pub(super) stop: AtomicBool,
     /// Pixels traced so far.
     pub pixels: AtomicU64,
-    /// Whether it is to wait: looked at for every piece, by every thread.
+    /// Whether the trace shall pause: every thread checks it before every piece.
     is_paused: AtomicBool,
     pause: Mutex<Pause>,
     gone_on: Condvar,
 }
 
-/// How long a trace has waited.
+/// How long a trace has been paused.
 #[derive(Debug, Default)]
 struct Pause {
-    /// Before this time.
+    /// Total of the pauses that have ended.
     before: Duration,
-    /// Since when it waits, if it does.
+    /// Start of the current pause, if there is one.
     since: Option<Instant>,
 }
 
 impl RenderControl {
-    /// Ends the trace within a part of a tile, also one that waits.
+    /// Stops the trace within a part of a tile, even if it is paused.
     pub fn stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
         self.go_on();
     }
 
-    /// Whether what is traced is not wanted any more.
+    /// Returns whether the trace shall stop.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Lets the trace wait before its next piece, until [`Self::go_on`].
+    /// Pauses the trace before its next piece, until [`Self::go_on`].
     pub fn pause(&self) {
         let mut pause = self.lock();
         pause.since.get_or_insert_with(Instant::now);
@@ -56,18 +56,18 @@ impl RenderControl {
         self.gone_on.notify_all();
     }
 
-    /// Whether the trace is to wait.
+    /// Returns whether the trace shall pause.
     pub fn is_paused(&self) -> bool {
         self.is_paused.load(Ordering::Relaxed)
     }
 
-    /// How long the trace has waited so far.
+    /// Returns how long the trace has been paused so far.
     pub fn paused(&self) -> Duration {
         let pause = self.lock();
         pause.before + pause.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
-    /// Begins to measure what takes time, without the pauses.
+    /// Starts a stopwatch that does not count pauses.
     pub fn stopwatch(&self) -> Stopwatch<'_> {
         Stopwatch {
             control: self,
@@ -76,7 +76,7 @@ impl RenderControl {
         }
     }
 
-    /// Returns once there is no pause, or the trace is stopped.
+    /// Blocks until there is no pause, or the trace is stopped.
     pub(super) fn wait(&self) {
         if !self.is_paused() {
             return;
@@ -93,7 +93,7 @@ impl RenderControl {
     }
 }
 
-/// Measures time without the pauses of a trace.
+/// Measures time, without the pauses of a trace.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch<'a> {
     control: &'a RenderControl,
@@ -102,7 +102,7 @@ pub struct Stopwatch<'a> {
 }
 
 impl Stopwatch<'_> {
-    /// Time since it was begun in which there was no pause.
+    /// Returns the time since its start, without pauses.
     pub fn elapsed(&self) -> Duration {
         let paused = self.control.paused().saturating_sub(self.paused);
         self.start.elapsed().saturating_sub(paused)

@@ -1,5 +1,5 @@
-//! Cells that one edge crosses. Where it crosses their sides is searched for, which says how much of them lies on
-//! either side of it; two colours are then enough.
+//! Cells that are crossed by one edge. A search finds where the edge crosses the sides of the cell; from this
+//! follows how much of the cell lies on either side of it, and two colours are then enough.
 
 use super::cell::Cell;
 use super::crossing::{Crossing, EdgeSide, contrast};
@@ -9,49 +9,51 @@ use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
 
-/// An edge that is known within more steps of the finest grid than this is so faint that its shape does not matter.
+/// An edge that may stay located within more steps of the finest grid than this is so faint that its shape does not
+/// matter.
 const SHAPELESS: u16 = 2;
-/// How far beside an edge, in parts of what it is known within, a sample is taken to see whether it is straight: the
-/// first of these whose point of the finest grid is [`SURE`] to say so.
+/// Distances from an edge at which a sample checks whether it is straight, in multiples of the width within which
+/// the edge is located: the first of these is used whose nearest point of the finest grid is at least [`SURE`]
+/// away.
 const BESIDE: [f64; 3] = [1.1, 1.6, 2.1];
-/// How far that sample must be from it: the ends of the edge are known within a half.
+/// Least distance of that sample from the edge, in the same unit: the edge's ends are off by up to a half.
 const SURE: f64 = 0.6;
 
-/// A cell that one edge crosses.
+/// A cell that is crossed by one edge.
 #[derive(Clone, Copy, Debug)]
 pub struct CrossedCell<R> {
     cell: Cell,
-    /// Which corners are on the first side of the edge, bit by bit.
+    /// The corners on the first side of the edge, as bits.
     first: u8,
     /// What is seen on both sides.
     things: [EdgeSide<R>; 2],
     crossings: [Crossing; 2],
-    /// Whether it was looked whether the edge is straight, and where.
+    /// Whether `checks` is set: the points whose samples show if the edge is straight.
     is_checked: bool,
     checks: [Option<[u16; 2]>; 2],
-    /// The samples there.
+    /// Indices of the samples at these points.
     checked: [u32; 2],
 }
 
-/// What is known of a cell.
+/// What has been found out about a cell.
 pub enum CellFinding {
-    /// Not enough.
+    /// Not enough yet.
     Nothing,
-    /// That it is not crossed by one straight edge.
+    /// It is not crossed by one straight edge.
     Disorder(Cell),
-    /// Its colour.
+    /// Its colour, which was added to its pixel.
     Color,
 }
 
 impl<R: Real> CrossedCell<R> {
-    /// The cell, if its corners say that one edge crosses it and what is seen on either side of it has one colour.
+    /// The cell, if its corners show that it is crossed by one edge, with a single colour on either side.
     pub fn of(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
         let limit = limits.contrast_of_same(cell.width());
         let is_like = |a: &CornerSample<R>, b: &CornerSample<R>| a.signature == b.signature;
         Self::new(cell, lattice, limits, (limit, is_like))
     }
 
-    /// The same for a cell whose corners all see one thing, if that has two colours, as faces of a mesh have.
+    /// The same for a cell whose corners all see one thing in two colours, like two faces of a mesh.
     pub fn of_colors(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
         let [a, b, c, d] = lattice.corners(cell);
         let apart = contrast(a, b).max(contrast(a, c)).max(contrast(a, d));
@@ -60,7 +62,8 @@ impl<R: Real> CrossedCell<R> {
         Self::new(cell, lattice, limits, (limit, is_like))
     }
 
-    /// The cell, if it is clear which corners see the same, and their colours differ by no more than a limit.
+    /// The cell, if its corners fall clearly into two sides, on each of which colours differ by no more than
+    /// `limit`.
     #[inline(always)]
     fn new(
         cell: &Cell,
@@ -74,7 +77,7 @@ impl<R: Real> CrossedCell<R> {
             like_first |= u8::from(is_like(sample, corners[0])) << corner;
         }
         let (first, sides) = sides_of(like_first)?;
-        // Written out: mapping arrays is a call here.
+        // Written out: `map` on an array would not be inlined here.
         let crossing = |(corner, axis): (usize, usize)| {
             let (one, other) = (corners[corner], corners[corner ^ (1 << axis)]);
             let mut apart = contrast(one, other);
@@ -111,12 +114,12 @@ impl<R: Real> CrossedCell<R> {
         &self.cell
     }
 
-    /// The sides that the edge crosses, as bits.
+    /// The sides of the cell that the edge crosses, as bits.
     pub fn sides(&self) -> u8 {
         self.crossings[0].side(&self.cell) | self.crossings[1].side(&self.cell)
     }
 
-    /// Wants the samples that it needs next.
+    /// Requests the samples that are needed next.
     pub fn want(&mut self, lattice: &mut Lattice<R>) {
         for crossing in &mut self.crossings {
             crossing.want(lattice);
@@ -128,7 +131,7 @@ impl<R: Real> CrossedCell<R> {
         }
     }
 
-    /// Takes what was seen there. What is found goes into the colours.
+    /// Evaluates the requested samples. If the colour is found, adds it to `colors`.
     pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> CellFinding {
         let disorder = CellFinding::Disorder(self.cell.unwatched());
         for crossing in &mut self.crossings {
@@ -156,8 +159,8 @@ impl<R: Real> CrossedCell<R> {
         CellFinding::Color
     }
 
-    /// Points closely beside the middle of the edge, on its first side and on its second, where they say whether it
-    /// is straight.
+    /// Returns points close to the middle of the edge, on its first and on its second side, whose samples show
+    /// whether the edge is straight; `None` where that cannot or need not be checked.
     fn beside(&self) -> [Option<[u16; 2]>; 2] {
         let [p, q] = &self.crossings;
         let within = (p.high - p.low).max(q.high - q.low);
@@ -169,9 +172,9 @@ impl<R: Real> CrossedCell<R> {
         let (along_x, along_y) = (qx - px, qy - py);
         let length = (along_x * along_x + along_y * along_y).sqrt();
         if length <= within {
-            return [None; 2]; // A corner is cut off, and nearly nothing with it.
+            return [None; 2]; // It cuts off a tiny corner, which does not matter.
         }
-        // Across the edge, away from the corner that the first crossing is counted from.
+        // Perpendicular to the edge, away from the corner that the first crossing is measured from.
         let mut across = [-along_y / length, along_x / length];
         if (across[p.axis] < 0.0) != p.is_back {
             across = across.map(|part| -part);
@@ -193,7 +196,7 @@ impl<R: Real> CrossedCell<R> {
         })
     }
 
-    /// The mean of what is seen on a side, at the corners and beside the edge.
+    /// The mean of what is seen on a side, at the corners and next to the crossings.
     #[inline(always)]
     fn seen(&self, lattice: &Lattice<R>, side: usize) -> [R; 4] {
         let (mut sum, mut count) = ([R::ZERO; 4], 0);
@@ -216,7 +219,7 @@ impl<R: Real> CrossedCell<R> {
         [red * share, green * share, blue * share, rest]
     }
 
-    /// Adds the colours on both sides to the cell's pixel, by the areas that they have.
+    /// Adds the colours of both sides to the cell's pixel, weighted by their areas.
     fn accumulate(&self, first: [R; 4], second: [R; 4], colors: &mut TileColors<R>) {
         let side = f64::from(self.cell.side);
         let [p, q] = &self.crossings;
@@ -232,9 +235,10 @@ impl<R: Real> CrossedCell<R> {
     }
 }
 
-/// The corners (upper left and right, lower left and right) on the first side of an edge, bit by bit, and the two sides
-/// that it crosses: the corner on its first side, and the axis along which it goes on; by which of them are like the
-/// first. `None` if it is not one edge.
+/// Returns the corners (upper left and right, lower left and right) on the first side of an edge, as bits, and the
+/// two cell sides that it crosses, each by its corner on the first side of the edge and the axis along which it
+/// runs from there. `like_first` has the bits of the corners that see the same as the first; `None` if that is not
+/// one edge.
 fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
     let alone = |corner: usize| Some((1 << corner, [(corner, 0), (corner, 1)]));
     match like_first {
@@ -248,7 +252,7 @@ fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
     }
 }
 
-/// Within how many steps the crossing of an edge of that contrast must be known.
+/// Number of steps within which the crossing of an edge of this contrast must be located.
 fn enough<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
     let least = limits.least_side() / 2;
     let mut enough = cell.side / 4;
@@ -273,7 +277,7 @@ mod tests {
         rows: 0..1,
     };
 
-    /// What is seen at these places of a pixel: black, or white where it says so.
+    /// Traces the samples of a pixel: white where `is_white`, black elsewhere.
     fn see(samples: &Samples<f64>, is_white: impl Fn(f64, f64) -> bool) -> Traced<f64> {
         let mut traced = Traced::default();
         traced.resize(samples.count, samples.count, EdgeDetail::Signed);
@@ -289,7 +293,7 @@ mod tests {
         traced
     }
 
-    /// How white a pixel is found, if it is found that one edge crosses it, and how many samples more that took.
+    /// The white share of a pixel, if it is found to be crossed by one edge, and the number of additional samples.
     fn found(is_white: impl Fn(f64, f64) -> bool) -> Option<(f64, usize)> {
         let Sampling::Adaptive { contrast, depth } = Sampling::ADAPTIVE else {
             return None;
@@ -320,7 +324,7 @@ mod tests {
         }
     }
 
-    /// The same by many samples.
+    /// The white share by many samples.
     fn counted(is_white: impl Fn(f64, f64) -> bool) -> f64 {
         let side = 256;
         let place = |index: usize| (index as f64 + 0.5) / side as f64;
@@ -328,7 +332,7 @@ mod tests {
         white.count() as f64 / (side * side) as f64
     }
 
-    /// A ball whose edge goes through a place.
+    /// A ball whose edge passes through a point.
     fn round(radius: f64, turn: f64, (x, y): (f64, f64)) -> impl Fn(f64, f64) -> bool {
         let (sine, cosine) = turn.to_radians().sin_cos();
         move |u, v| (u - x - radius * cosine).hypot(v - y - radius * sine) < radius
@@ -357,7 +361,7 @@ mod tests {
 
     #[test]
     fn a_small_ball_beside_the_corners_is_not_taken_for_a_straight_edge() {
-        // Found by chance: a sample beside the edge was rounded to one on it, and said nothing.
+        // Found by chance: a sample beside the edge was rounded onto it, and showed nothing.
         for (radius, turn, x, y) in [
             (
                 0.985_138_781_292_264_8,

@@ -1,4 +1,4 @@
-//! Where an edge crosses a side of a cell: it is searched for between two samples that see different things.
+//! The point where an edge crosses a side of a cell: a search between two samples that see different things.
 
 use super::cell::Cell;
 use super::lattice::{CornerSample, Lattice};
@@ -8,21 +8,21 @@ use crate::simd::Real;
 /// What is seen on one side of an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeSide<R> {
-    /// What a corner there has seen.
+    /// The sample at a corner on that side.
     pub seen: CornerSample<R>,
-    /// How far other colours of it may be from that, summed over the channels.
+    /// Greatest difference between its colour and others on that side, summed over the channels.
     pub limit: R,
 }
 
 impl<R: Real> EdgeSide<R> {
-    /// Whether a sample has seen it.
+    /// Returns whether a sample sees the same.
     #[inline(always)]
     pub fn is_in(&self, sample: &CornerSample<R>) -> bool {
         sample.signature == self.seen.signature && contrast(sample, &self.seen) <= self.limit
     }
 }
 
-/// The difference of what two samples have seen, summed over the channels.
+/// The difference of the colours of two samples, summed over the channels.
 #[inline(always)]
 pub fn contrast<R: Real>(a: &CornerSample<R>, b: &CornerSample<R>) -> R {
     let mut sum = R::ZERO;
@@ -32,32 +32,32 @@ pub fn contrast<R: Real>(a: &CornerSample<R>, b: &CornerSample<R>) -> R {
     sum
 }
 
-/// A place in a cell, in steps of the finest grid.
+/// A point in a cell, in steps of the finest grid.
 pub type Place = [f64; 2];
 
-/// Where an edge crosses a side of a cell.
+/// The point where an edge crosses a side of a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing {
-    /// The corner on its first side, on the finest grid.
+    /// The corner of the cell on the edge's first side, on the finest grid.
     corner: [u16; 2],
-    /// 0 for a side along a row, 1 for one along a column.
+    /// 0 if the cell's side runs along a row, 1 if along a column.
     pub axis: usize,
-    /// Whether the side goes on to the left, or upwards.
+    /// Whether the cell's side runs from the corner to the left or upwards.
     pub is_back: bool,
-    /// The steps from the corner that the edge is beyond.
+    /// Steps from the corner to the last sample before the edge.
     pub low: u16,
-    /// And those that it is before.
+    /// Steps from the corner to the first sample beyond the edge.
     pub high: u16,
-    /// It need not be known within less.
+    /// The search ends once `high - low` is no more than this.
     enough: u16,
-    /// The samples there.
+    /// Indices of the samples at `low` and `high`.
     pub seen: [u32; 2],
-    /// Those between them that are wanted.
+    /// Indices of the samples requested between them.
     inside: [u32; 3],
 }
 
 impl Crossing {
-    /// Somewhere on the side of a cell that goes from a corner along an axis.
+    /// Creates a search over the whole side of the cell that runs from `corner` along `axis`.
     pub fn new(cell: &Cell, (corner, axis): (usize, usize), enough: u16) -> Self {
         let place = |from: u16, axis: usize| from + (corner >> axis & 1) as u16 * cell.side;
         Self {
@@ -83,7 +83,7 @@ impl Crossing {
         }
     }
 
-    /// So many steps from the corner.
+    /// Returns the grid point at this number of steps from the corner.
     fn point(&self, steps: u16) -> [u16; 2] {
         let mut point = self.corner;
         let place = &mut point[self.axis];
@@ -95,12 +95,12 @@ impl Crossing {
         point
     }
 
-    /// Whether it is known well enough.
+    /// Returns whether the edge is located closely enough.
     pub fn is_found(&self) -> bool {
         self.high - self.low <= self.enough
     }
 
-    /// The points where the edge is looked for next: the steps from the corner to the first, and between them.
+    /// Steps from `low` to the first point that is sampled next, and from each of these points to the next.
     fn step(&self) -> u16 {
         let quarter = (self.high - self.low) / 4;
         if quarter < self.enough {
@@ -110,7 +110,7 @@ impl Crossing {
         }
     }
 
-    /// Wants the samples that are between what is known.
+    /// Requests samples between those that are known.
     pub fn want<R: Real>(&mut self, lattice: &mut Lattice<R>) {
         if self.is_found() {
             return;
@@ -126,7 +126,8 @@ impl Crossing {
         }
     }
 
-    /// Takes what was seen there; false unless that is the first thing, and then the second.
+    /// Narrows the search by the requested samples; returns false unless they see the first thing and then the
+    /// second.
     pub fn narrow<R: Real>(
         &mut self,
         lattice: &Lattice<R>,
@@ -157,12 +158,12 @@ impl Crossing {
         true
     }
 
-    /// How many steps from the corner the edge is.
+    /// Steps from the corner to the edge.
     pub fn distance(&self) -> f64 {
         f64::from(self.low + self.high) * 0.5
     }
 
-    /// Where the edge is, on the finest grid.
+    /// The crossing, on the finest grid.
     pub fn place(&self) -> Place {
         let mut place = self.corner.map(f64::from);
         place[self.axis] += if self.is_back {

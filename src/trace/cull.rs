@@ -1,4 +1,4 @@
-//! Leaving primitives out before a ray is touched: planes that a tile passes by, those that its mirrors
+//! Culling of primitives before any ray is tested: planes that a tile does not see, primitives that its mirrors
 //! cannot show, and those that cannot cast a shadow into it.
 
 use glam::DVec3;
@@ -17,10 +17,10 @@ use crate::plan::{Plan, PointLight, RayOrigin};
 use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive, Visit};
 use crate::simd::{Real, SimdFloat};
 
-/// Memory to gather candidates in, used again for every beam.
+/// Scratch memory for gathering candidates, reused for every beam.
 #[derive(Debug)]
 pub struct Scratch<R> {
-    /// Boxes of a tree that wait to be looked into.
+    /// Boxes of a tree that are still to be visited.
     pub stack: Stack<R>,
     met: Vec<u32>,
 }
@@ -34,21 +34,22 @@ impl<R> Default for Scratch<R> {
     }
 }
 
-/// What can stand between a light and the hits of a tile.
+/// What can block a light on the way to the hits of a tile.
 #[derive(Clone, Debug, Default)]
 pub struct LightCandidates {
-    /// What may block the light for some of them.
+    /// Candidates that may block the light for some of the hits.
     pub casters: Candidates,
-    /// Where to start in the trees.
+    /// Where the shadow rays enter the trees.
     pub entry_points: EntryPoints,
-    /// Those of them whose shadows may slip between samples.
+    /// Candidates whose shadows may slip between samples.
     pub thin: Candidates,
-    /// Whether one primitive blocks it for all of them.
+    /// Whether a single primitive blocks the light for all hits.
     pub is_umbra: bool,
 }
 
 impl Candidates {
-    /// Becomes those of `from` that may slip between samples where pixels are so wide; nothing without.
+    /// Becomes the candidates of `from` that may slip between samples if pixels are `footprint` wide; empty without
+    /// a footprint.
     fn keep_slipping<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
         match footprint {
             None => self.clear(),
@@ -59,10 +60,10 @@ impl Candidates {
         }
     }
 
-    /// Leaves out the planes that the rays of a tile pass by or leave behind.
+    /// Removes the planes that the rays of a tile pass by or leave behind.
     ///
-    /// Height over the plane and speed towards it change along a row or column by equal steps, so
-    /// that their signs at the corners are all that there are.
+    /// Height above the plane and speed towards it change linearly along a row or column, so that no signs occur
+    /// but those at the corners.
     pub fn drop_unseen_planes<R: Real>(&mut self, plan: &Plan<R>, tile: &Tile) {
         let edge = |index: usize| R::from_f64(index as f64);
         let (left, right) = (edge(tile.columns.start), edge(tile.columns.end));
@@ -83,8 +84,8 @@ impl Candidates {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// `candidates` become what rays of the beam can meet, markers included, but for a plane that all of
-    /// them start on.
+    /// `candidates` becomes what rays of the beam can meet, markers included, except a plane on which all of them
+    /// start.
     #[inline(always)]
     pub fn keep_met(
         self,
@@ -104,8 +105,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// `between` becomes what can stand between a light and some point of a ball, `footprint` around it
-    /// included; without one, what is thin is not listed.
+    /// `between` becomes what can block a light for any point of a ball or within `footprint` of it; without a
+    /// footprint, nothing thin is listed.
     #[inline(always)]
     pub fn keep_between(
         self,
@@ -131,7 +132,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             *is_umbra = false;
             return;
         };
-        // The first ones are those of the markers.
+        // The first balls are those of the markers.
         beam.gather::<L>(self.token, (&plan.balls, plan.markers), &mut scratch.met);
         let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
         casters.sort_by_kind(plan, &scratch.met, omit);
@@ -154,9 +155,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Finds where shadow rays from these hits to a light can start to look into the trees, and whether something thin
-    /// may slip between samples there, with pixels as wide as the footprint. Without the rule that starts them at the
-    /// hits, they start anywhere.
+    /// Finds where shadow rays from these hits to a light enter the trees, and whether something thin may slip
+    /// between samples there if pixels are as wide as `footprint`. Does nothing unless the plan starts rays at the
+    /// hits, since otherwise they may start anywhere.
     #[inline(always)]
     pub fn enter_towards(
         self,
@@ -174,7 +175,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         let caution = L::Real::from_f64(FAR_CAUTION);
         let reach = geometry.bvh.bounds.max_abs();
-        // In one step, from the light to the hits, or from there to a light that is far.
+        // Parametrised from 0 to 1: from the light to the hits or, for a distant light, from the hits to the light.
         let shaft = if let Some(apex) = light.apex(geometry) {
             let slack = (hits.max_abs() + reach.max(apex.max_abs())) * caution;
             let ends = hits.widened(slack);

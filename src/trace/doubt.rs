@@ -1,5 +1,5 @@
-//! Whether rounding may decide what rays meet. A picture in single precision traces the samples again, in double
-//! precision, of which it may.
+//! Whether rounding may decide what rays hit. Single-precision pictures retrace the samples for which it may in
+//! double precision.
 
 use super::paths::Paths;
 use crate::plan::Plan;
@@ -7,33 +7,33 @@ use crate::primitive::{Blur, Primitive, SurfacePoint};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// Two hits as close along a ray as so many times what it is off aside may change places: of surfaces that the ray
-/// meets at up to 89 degrees from their normals.
+/// Two hits may swap places if they are no farther apart along a ray than this many times its lateral error: this
+/// covers surfaces that the ray meets at up to 89 degrees from their normals.
 const SLANT: f64 = 64.0;
 
-/// Whether kernels tell what is in doubt. Those without `TREE` do not, and lose no time by it: a few things have few edges.
-/// Where those are filtered all the same, the others trace them.
+/// Whether kernels detect doubtful hits. Those without `TREE` do not, and lose no time by it: scenes of few things
+/// have few edges. If such a scene is filtered nevertheless, kernels with `TREE` trace it.
 pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
     TREE && L::Real::IS_FILTERED
 }
 
-/// What rays leave undecided.
+/// What is undecided about the hits of rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubt<L: SimdFloat, const TREE: bool> {
     is_asked: bool,
-    /// How far the rays may be beside their place.
+    /// Lateral error of the rays.
     pub blur: Blur<L>,
-    /// How far along them a hit may be off.
+    /// Error of a hit along the rays.
     along: Blur<L>,
-    /// From where on they may meet something else.
+    /// Distance from which on the rays may hit something else.
     pub from: L,
-    /// How far the second thing is that they meet.
+    /// Distance of the second-nearest hit.
     pub second: L,
 }
 
 impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
-    /// Nothing is undecided yet, and nothing ever is if nobody asks. Without `tells_nearer`, which of two hits is nearer
-    /// never is.
+    /// Starts with nothing in doubt, which stays so unless `is_asked`. Without `tells_nearer`, it is never in doubt
+    /// which of two hits is nearer.
     #[inline(always)]
     pub fn new(blur: Blur<L>, (is_asked, tells_nearer): (bool, bool)) -> Self {
         Self {
@@ -45,13 +45,13 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         }
     }
 
-    /// Whether anybody asks.
+    /// Returns whether doubtful hits are detected.
     #[inline(always)]
     pub fn is_asked(&self) -> bool {
         is_filtered::<L, TREE>() && self.is_asked
     }
 
-    /// A distance, and as much more as rounding may have taken away.
+    /// Returns a distance, increased by as much as rounding may have reduced it.
     #[inline(always)]
     pub fn after(&self, t: L) -> L {
         if self.is_asked() {
@@ -61,7 +61,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         }
     }
 
-    /// The same as a multiple of a distance.
+    /// The factor by which [`Self::after`] increases a distance.
     #[inline(always)]
     pub fn stretch(&self, t: L) -> L {
         let one = t.like(L::Real::ONE);
@@ -72,21 +72,22 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         }
     }
 
-    /// A distance, and so much less.
+    /// Returns a distance, reduced by its error.
     #[inline(always)]
     pub fn ahead_of(&self, t: L) -> L {
         t - self.along.at(t)
     }
 
-    /// Where the nearest hit and the second may change places: also where they are equally near, as are pieces a hair apart
-    /// from afar.
+    /// Returns where the nearest and the second hit may swap places: also where they are at equal distances, as
+    /// surfaces a hair apart are if seen from afar.
     #[inline(always)]
     pub fn is_tie(&self, nearest: L, second: L) -> L::Mask {
-        // Infinity less infinity is no number.
+        // If both are infinite, the difference is NaN, which is not less.
         (second - nearest).less(self.along.at(nearest))
     }
 
-    /// How far a primitive is, and from where on that is undecided; `None` if no ray that is wanted meets it.
+    /// Returns the distance of a primitive, and the distance from which on it is undecided whether it is hit;
+    /// `None` if no wanted ray hits it.
     #[inline(always)]
     pub fn distance<const LISTED: bool, P: Primitive<L::Real>>(
         &self,
@@ -97,7 +98,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
     ) -> Option<(L, L)> {
         let infinity = self.blur.start.like(L::Real::INFINITY);
         if LISTED && paths.ignored.shared() == Some(number) {
-            // Where they start on it, they are known not to meet it.
+            // Rays that start on a flat primitive do not hit it.
             if !P::IS_CURVED {
                 return None;
             }
@@ -114,7 +115,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         Some((t, L::select(own, infinity, from)))
     }
 
-    /// Where the rays may meet something else up to a distance.
+    /// Returns where the rays may hit something else up to a distance.
     #[inline(always)]
     pub fn before(&self, t: L) -> L::Mask {
         let infinity = t.like(L::Real::INFINITY);
@@ -122,37 +123,38 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
     }
 }
 
-/// The smallest cosine between rays and a surface's normal at which hits are told: the smaller it is, the more is
-/// looked for around hits, and the larger, the more is traced again.
+/// Smallest cosine between rays and a surface's normal at which hits are judged: if it were smaller, more would have
+/// to be searched around hits; if it were larger, more would be traced again.
 const LEAST_COSINE: f64 = 4e-3;
-/// How much farther off at distance 1 mirrored rays may be.
+/// Least error per unit of distance at which mirrored rays are not judged.
 const WIDEST: f64 = 1e-3;
-/// Rays that bring back no more than this are not doubted, nor is what they see in mirrors: less than a step of 8 bits.
+/// Rays that contribute no more than this are not doubted, nor is what they see in mirrors: less than an 8-bit
+/// level.
 const FAINTEST: f64 = 1.0 / 400.0;
 
-/// How far off along a surface hits may be at most that are told, where rays are no farther off than this, and nothing is
-/// larger than `size`.
+/// Upper bound of the error along the surface of hits that are judged, if the rays are off by no more than `off`
+/// and no coordinate exceeds `size`.
 pub fn farthest_off<R: Real>(off: R, size: R) -> R {
     (off + Blur::of_size(size).start) * R::from_f64(1.0 / LEAST_COSINE)
 }
 
-/// What is known of how right the rays of a packet are.
+/// How exact the rays of a packet are.
 #[derive(Clone, Copy)]
 pub struct Uncertainty<L: SimdFloat> {
-    /// How far they may be beside their place.
+    /// Lateral error of the rays.
     pub blur: Blur<L>,
-    /// What of their colours comes back to the camera, at most.
+    /// Upper bound of the share of their colours that reaches the camera.
     pub weight: L,
-    /// Where rounding may decide what comes back.
+    /// Where rounding may decide their colours.
     pub doubt: L::Mask,
-    /// How far away from where coordinates count from some of their own do, in which meshes are met.
+    /// The largest coordinate of the centre of a mesh: rays meet faces in coordinates relative to that.
     farthest_middle: L,
-    /// The same blur and weight of the rays that mirrors send on.
+    /// Blur and weight of the rays that mirrors send on.
     mirrored: (Blur<L>, L),
 }
 
 impl<L: SimdFloat> Uncertainty<L> {
-    /// Of rays from the camera.
+    /// For rays from the camera.
     #[inline(always)]
     pub fn new(token: L::Token, plan: &Plan<L::Real>) -> Self {
         let weight = L::splat(token, L::Real::ONE);
@@ -165,7 +167,7 @@ impl<L: SimdFloat> Uncertainty<L> {
         }
     }
 
-    /// Of the rays that mirrors have sent on.
+    /// For the rays that mirrors have sent on.
     #[inline(always)]
     #[must_use]
     pub fn of_mirrored(&self) -> Self {
@@ -180,7 +182,7 @@ impl<L: SimdFloat> Uncertainty<L> {
     }
 }
 
-/// How far any of the rays may be beside its place.
+/// Returns the blur that covers those of all rays.
 #[inline(always)]
 pub fn widest_blur<L: SimdFloat>(
     token: L::Token,
@@ -195,23 +197,23 @@ pub fn widest_blur<L: SimdFloat>(
     Blur::spreading(start.greatest(), spread.greatest())
 }
 
-/// How far along a surface the hits of rays may be off.
+/// Error of the hits of rays along a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Slant<L: SimdFloat> {
     off: L,
-    /// Where that is so far that nothing can be told of rays that go on from there: not even what is looked for around
-    /// them is as far off.
+    /// Where the error is so large that nothing can be said about rays that go on from there: it exceeds even the
+    /// distance that is searched around them.
     pub is_lost: L::Mask,
-    /// How much farther off at distance 1 the rays were that came here.
+    /// Error per unit of distance of the rays that hit the surface.
     spread: L,
-    /// Of the surface.
+    /// Curvature of the surface.
     curvature: L,
-    /// How far off rays are that set out from numbers as large as the surface's.
+    /// Blur of rays that start at coordinates as large as the surface's.
     own: Blur<L>,
 }
 
 impl<L: SimdFloat> Slant<L> {
-    /// Of rays that have come so far, and meet the surface with this cosine between them and its normal.
+    /// For rays that hit the surface at distance `t`, with this cosine between them and its normal.
     #[inline(always)]
     pub fn new(rays: &Uncertainty<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
         let blur = &rays.blur;
@@ -226,8 +228,8 @@ impl<L: SimdFloat> Slant<L> {
         }
     }
 
-    /// Where light, whose angle from the normal has this cosine, may come from either side of the surface; given one over
-    /// its distance. It shows where there are highlights: they may end sharply there.
+    /// Returns where a light, at this cosine from the normal, may be on either side of the surface; `per_length` is
+    /// one over its distance. This only shows where there are highlights, which may end abruptly there.
     #[inline(always)]
     pub fn grazes(&self, (cosine, per_length): (L, L), shiny: Option<L::Mask>) -> L::Mask {
         let Some(shiny) = shiny else {
@@ -238,16 +240,16 @@ impl<L: SimdFloat> Slant<L> {
         shiny & cosine.abs().at_most(turn + rounded)
     }
 
-    /// How far rays that go on to a light, which is so far away, may be off, where something can be told of them; given
-    /// one over that distance.
+    /// Returns the blur of rays that go on to a light, as far as anything is known about it; given the light's
+    /// distance and one over that.
     #[inline(always)]
     pub fn onwards(&self, distance: (L, L)) -> Blur<L> {
         let off = L::select(self.is_lost, self.own.start, self.off);
         self.own.towards(off, distance)
     }
 
-    /// Notes what is known of the rays that a mirror sends on, where there are some, which bring back so much of what
-    /// they see. Where they are too far off for anything to be told, all of it is in doubt.
+    /// Notes blur and weight of the rays that a mirror sends on, where `active`; `share` is the share that it
+    /// reflects. Where their error is too large to judge them, the whole ray is in doubt.
     #[inline(always)]
     pub fn mirror(&self, (active, share): (L::Mask, L), own: &mut Uncertainty<L>) {
         let off = self.off;

@@ -1,5 +1,5 @@
-//! The rays of a tile, bounce by bounce: what all of them meet first; then, knowing where that is, the
-//! light that falls on it; then the rays that mirrors send on, as the next bounce.
+//! Traces the rays of a tile bounce by bounce: first what all of them hit; then, knowing where that is, the light
+//! that falls on it; then the rays that mirrors send on, as the next bounce.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -14,25 +14,25 @@ use super::stats::Rays;
 use crate::plan::Show;
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// What an engine works with, and the next one for the same plan may as well.
+/// Scratch memory of an engine, reusable by the next engine for the same plan.
 pub struct Workspace<L: SimdFloat> {
     bounces: Vec<Bounce<L>>,
     scratch: Scratch<L::Real>,
-    /// What was seen by rays that were put in another order than the samples.
+    /// Results of rays that were traced in another order than the samples.
     unsorted: Traced<L::Real>,
     again: Repeated,
 }
 
-/// Samples that are traced again.
+/// Samples that are retraced.
 #[derive(Default)]
 struct Repeated {
-    /// Which they are.
+    /// Their indices.
     places: Vec<u32>,
     samples: Samples<f64>,
     traced: Traced<f64>,
 }
 
-/// What traces samples again where rounding may have decided what was seen.
+/// Retraces samples for which rounding may have decided what was seen.
 pub trait Retracer: Sync {
     /// Traces the samples in double precision.
     fn trace(
@@ -55,20 +55,20 @@ impl<L: SimdFloat> Default for Workspace<L> {
     }
 }
 
-/// What traces the samples of a tile.
+/// Traces the samples of a tile.
 pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     kernel: Kernel<'a, L, TREE>,
     work: &'a mut Workspace<L>,
-    /// Whether nobody wants the picture any more: the rays of one tile can take minutes.
+    /// Set once the picture is no longer wanted; also checked within a tile, whose rays can take minutes.
     stop: &'a AtomicBool,
     reference: Option<&'a dyn Retracer>,
-    /// Rays traced so far.
+    /// Number of rays traced so far.
     pub rays: Rays,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
-    /// An engine for a plan, which does nothing more once `stop` is set, and what traces again what is in doubt, if
-    /// something does.
+    /// Creates an engine for a plan. It does nothing more once `stop` is set; `reference`, if given, retraces
+    /// doubtful samples.
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
@@ -83,17 +83,18 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         }
     }
 
-    /// The proof that the processor has the lanes.
+    /// The proof that the processor has these lanes.
     pub fn token(&self) -> L::Token {
         self.kernel.token
     }
 
-    /// Whether what is traced is for nothing.
+    /// Returns whether the trace was stopped.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Traces the samples, which can meet what is in `seen`; once the engine is stopped, what is seen is arbitrary.
+    /// Traces the samples, whose rays can meet what is in `seen`. Once the engine is stopped, the results are
+    /// arbitrary.
     pub fn trace(
         &mut self,
         samples: &Samples<L::Real>,
@@ -101,14 +102,15 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
-        // A function of its own: it is long, and called from several places.
+        // A function of its own, since it is long and called from several places.
         L::vectorize(
             self.kernel.token,
             #[inline(always)]
             || self.trace_vectorized(samples, seen, edges, traced),
         );
         let is_anything_seen = !seen.is_empty() && !self.is_stopped();
-        // Empty in most scenes, and small where it is not: beside the kernel, which is quicker without.
+        // There are no faces in most scenes, and few in others: noted outside of the kernel, which is faster
+        // without.
         traced.faces.clear();
         if edges >= EdgeDetail::Bordered && is_anything_seen {
             let bounce = &self.work.bounces[0];
@@ -124,7 +126,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         }
     }
 
-    /// Traces the samples again that are in doubt.
+    /// Retraces the samples that are in doubt.
     fn repeat(
         &mut self,
         reference: &dyn Retracer,
@@ -173,7 +175,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         self.grow(0);
         self.work.bounces[0].start(kernel, samples, seen, edges);
 
-        // Forward: each bounce sends the next one on its way.
+        // Forward: each bounce spawns the rays of the next one.
         let mut depth = 0;
         loop {
             self.grow(depth + 1);
@@ -201,7 +203,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             }
         }
 
-        // And back: each bounce takes what the next one has seen.
+        // Backward: each bounce takes the results of the next one.
         for depth in (1..=depth).rev() {
             let (bounces, deeper) = self.work.bounces.split_at_mut(depth);
             bounces[depth - 1].take_colors(&deeper[0]);

@@ -1,14 +1,15 @@
-//! Where the packets of a tile start to look into trees: the way that all of them go is gone once.
+//! Entry points into the trees for the packets of a tile: the part of the traversal that all of them share is done
+//! once.
 
 use super::bundle::Shaft;
 use crate::plan::{Bvh, Child, GROUP, Geometry, Node};
 use crate::simd::{Real as _, SimdFloat};
 
-/// Most meshes that a tile has starts of their own for; the others are entered at their roots.
+/// Greatest number of meshes with entry points of their own per tile; others are entered at their roots.
 const MESHES: usize = 4;
 
-/// For a tile's rays, the nodes to start from. A node of these may be in no tree: its boxes come from
-/// several, and together hold everything that the rays can meet.
+/// The nodes at which a tile's rays enter the trees. They need not be nodes of a tree: their boxes may come from
+/// several nodes, and together contain everything that the rays can meet.
 #[derive(Clone, Debug, Default)]
 pub struct EntryPoints {
     objects: Option<Node>,
@@ -16,13 +17,13 @@ pub struct EntryPoints {
 }
 
 impl EntryPoints {
-    /// The roots of the trees themselves.
+    /// Resets the entry points to the roots of the trees.
     pub fn forget(&mut self) {
         self.objects = None;
         self.meshes.clear();
     }
 
-    /// Finds the starts of rays that go no farther than `reach`. Whether they can meet anything.
+    /// Finds the entry points of rays that go no farther than `reach`. Returns whether they can meet anything.
     #[inline(never)]
     pub fn narrow<L: SimdFloat>(
         &mut self,
@@ -70,13 +71,13 @@ impl EntryPoints {
         objects.count > 0
     }
 
-    /// Where to start among the objects.
+    /// The entry point into the tree of objects.
     #[inline(always)]
     pub fn of_objects<'a, R>(&'a self, geometry: &'a Geometry<R>) -> Option<&'a Node> {
         self.objects.as_ref().or(geometry.bvh.nodes.first())
     }
 
-    /// Where to start in a mesh.
+    /// The entry point into the tree of a mesh.
     #[inline(always)]
     pub fn of_mesh<'a, R>(&'a self, geometry: &'a Geometry<R>, mesh: usize) -> Option<&'a Node> {
         let own = self
@@ -90,7 +91,8 @@ impl EntryPoints {
     }
 }
 
-/// The boxes that the rays can meet, as far down as there is room for all of them; `None` for none.
+/// Returns the boxes that the rays can meet, descended as far as all of them fit in one node; `None` if there are
+/// none.
 #[inline(always)]
 fn start<L: SimdFloat>(
     token: L::Token,
@@ -112,7 +114,7 @@ fn start<L: SimdFloat>(
             if bits.count_ones() as usize <= GROUP + 1 - met.count {
                 met.remove(index);
                 met.take_met(inner, bits);
-                // What has moved into its place is next.
+                // The box that was moved to this index comes next.
                 continue;
             }
         }
@@ -122,7 +124,7 @@ fn start<L: SimdFloat>(
 }
 
 impl Node {
-    /// Takes over the boxes of a node whose bits are set.
+    /// Appends the boxes of another node whose bits are set.
     #[inline(always)]
     fn take_met(&mut self, from: &Self, mut bits: u64) {
         while bits != 0 {

@@ -1,6 +1,6 @@
-//! Which flat faces samples are on. Where two beside each other are on faces that share no edge, others lie between
-//! them, which no sample has seen; and where one is on a face that looks away from a light, and the other in shadow on
-//! one that does not, there may be light between them.
+//! Marks of the flat faces that samples are on. If two adjacent samples are on faces that share no edge, there are
+//! other faces between them that no sample has seen; if one is on a face that looks away from a light and the other
+//! in shadow on one that does not, there may be light between them.
 
 use super::gather::HitPrimitive;
 use super::packet::Packet;
@@ -10,17 +10,17 @@ use crate::plan::{Geometry, Plan};
 use crate::primitive::{Kind, PackedTriangle};
 use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
-/// The bits of a mark that are of one corner.
+/// Bits of a mark for each corner of the face.
 const BITS: u32 = 10;
 const CORNER: u64 = (1 << BITS) - 1;
-/// Sine of the angle with a face below which a light is not seen on it.
+/// Sine of the angle between a face and the direction to a light below which its light is not visible on the face.
 const GRAZING: f64 = 1e-3;
-/// How many lights a mark tells of.
+/// Number of lights that a mark covers.
 const LIGHTS: usize = 32;
 
-/// Notes the marks of the flat faces that packets have met, of meshes or of many triangles that hang together: 0 for
-/// everything else, and nothing in scenes without. `order` says which sample each ray is, if they are in another order.
-/// Of smooth surfaces one does not see the faces.
+/// Notes the marks of the flat faces that packets have hit, of meshes or of connected triangles: 0 for everything
+/// else, and nothing in scenes without such faces. `order` maps rays to samples if they were reordered. Faces of
+/// smooth surfaces are not visible, and have no marks.
 pub fn note_faces<L: SimdFloat>(
     plan: &Plan<L::Real>,
     (packets, order): (&[Packet<L>], &[u32]),
@@ -31,7 +31,7 @@ pub fn note_faces<L: SimdFloat>(
     }
     traced.faces.resize(traced.red.len(), 0);
     let mut numbers = [L::Real::ZERO; MAX_LANES];
-    // Those of rays beside each other are often the same.
+    // Adjacent rays are often on the same face.
     let (mut last, mut mark) = (NOTHING, 0);
     for (index, packet) in packets.iter().enumerate() {
         packet.near.number.store(&mut numbers);
@@ -52,7 +52,7 @@ pub fn note_faces<L: SimdFloat>(
     }
 }
 
-/// Whether there are faces between which others may be hidden.
+/// Returns whether there are faces between which others may be hidden.
 fn has_faces<R: Real>(plan: &Plan<R>) -> bool {
     let in_geometry = |geometry: &Geometry<R>| {
         let mut meshes = geometry.meshes.iter();
@@ -61,10 +61,10 @@ fn has_faces<R: Real>(plan: &Plan<R>) -> bool {
     !plan.primitives.things.is_empty() || plan.geometry.as_deref().is_some_and(in_geometry)
 }
 
-/// A flat face, and the point that its corners count from.
+/// A flat face, and the origin of its corners' coordinates.
 type Face<'a, R> = (&'a PackedTriangle<R>, Vec3<R>);
 
-/// The flat face of this number, if it is one.
+/// Returns the face with this number, if it is a flat one.
 fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
     match plan.numbered_geometry() {
         Some((geometry, first)) if first <= number => {
@@ -78,8 +78,9 @@ fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
     }
 }
 
-/// Which of the first lights are behind a face that is seen in a direction, or so low before it that one does not see
-/// their light: in any precision the same, also where a light is in the plane of a face.
+/// Returns which of the first [`LIGHTS`] lights are behind a face that is seen in this direction, or so low above
+/// it that their light is not visible. The result is the same in any precision, even if a light is in the plane of
+/// the face.
 fn dark_sides<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
     let place = face.corners[0] + origin;
     let is_front = direction.dot(face.normal) < R::ZERO;
@@ -93,25 +94,25 @@ fn dark_sides<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<
     })
 }
 
-/// What tells a face from others, and its neighbours from those: a few bits of each corner, never 0.
+/// Combines a few bits of each corner, never 0: they identify the face, and show which faces are its neighbours.
 fn mark_of<R: Real>(corners: [Vec3<R>; 3]) -> u64 {
     let [a, b, c] = corners.map(bits_of).map(u64::from);
     a << (2 * BITS) | b << BITS | c
 }
 
-/// A few bits of a corner, not 0, the same in single and in double precision.
+/// Hashes a corner to a few bits, not 0, which are the same in single and in double precision.
 fn bits_of<R: Real>(corner: Vec3<R>) -> u32 {
     let mut bits = 0_u32;
     for number in [corner.x, corner.y, corner.z] {
-        // Both zeros are one place.
+        // Maps -0 to +0.
         let own = (number.to_f64() as f32 + 0.0).to_bits();
         bits = (bits.rotate_left(5) ^ own).wrapping_mul(0x9E37_79B1);
     }
     (bits >> (32 - BITS)).max(1)
 }
 
-/// Whether there may be a face, or light, between the samples at the corners of a cell that none of them has seen:
-/// upper left and right, lower left and right.
+/// Returns whether a face, or light, may be hidden between the samples at a cell's corners: upper left and right,
+/// lower left and right.
 #[inline(always)]
 pub fn may_hide_face(corners: [u64; 4]) -> bool {
     any_beside(corners, |one, other| {
@@ -119,20 +120,21 @@ pub fn may_hide_face(corners: [u64; 4]) -> bool {
     })
 }
 
-/// Whether there may be light between them alone: two beside each other are on faces of which one looks away from it.
+/// Returns whether light may be hidden between them: two adjacent ones are on faces of which only one looks away
+/// from it.
 pub fn may_hide_light(corners: [u64; 4]) -> bool {
     any_beside(corners, |one, other| {
         one != 0 && other != 0 && dark(one) != dark(other)
     })
 }
 
-/// Whether this is so of two corners of a cell that are beside each other.
+/// Returns whether a condition holds for any two adjacent corners of a cell.
 #[inline(always)]
 fn any_beside([a, b, c, d]: [u64; 4], is_so: impl Fn(u64, u64) -> bool) -> bool {
     is_so(a, b) || is_so(a, c) || is_so(b, d) || is_so(c, d)
 }
 
-/// Whether two different faces share an edge and look at the same lights, or one of them is none.
+/// Returns whether two different faces share an edge and face the same lights, or one of the marks is of no face.
 fn are_neighbours(a: u64, b: u64) -> bool {
     let corners = |mark: u64| [mark, mark >> BITS, mark >> (2 * BITS)].map(|bits| bits & CORNER);
     let others = corners(b);
@@ -140,7 +142,7 @@ fn are_neighbours(a: u64, b: u64) -> bool {
     a == 0 || b == 0 || (shared.count() >= 2 && dark(a) == dark(b))
 }
 
-/// The lights behind the face of a mark.
+/// The lights behind the face, as bits.
 fn dark(mark: u64) -> u64 {
     mark >> (u64::BITS - u32::BITS)
 }
@@ -153,7 +155,7 @@ mod tests {
     fn faces_that_meet_in_a_corner_alone_have_others_between_them() {
         let at = |x: f64, y: f64| Vec3 { x, y, z: 0.5 };
         let hub = at(0.0, -0.0);
-        // A fan around the hub.
+        // A fan of triangles around the hub.
         let fan = |number: u32| {
             let rim = |number: u32| {
                 let (y, x) = (f64::from(number % 6) * 60.0).to_radians().sin_cos();
@@ -176,7 +178,7 @@ mod tests {
                 assert!(may_hide_face(around), "{around:x?}");
             }
         }
-        // A light behind one of two neighbours, and not behind the other.
+        // A light behind only one of two neighbours.
         let dark = fan(1) | 1 << u32::BITS;
         assert!(may_hide_face([fan(0), dark, fan(0), dark]));
         assert!(may_hide_light([fan(0), dark, fan(0), dark]));

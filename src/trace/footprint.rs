@@ -1,36 +1,36 @@
-//! How large a pixel is: along rays, and on what they meet.
+//! The size of a pixel: along rays, and on the surfaces that they hit.
 
 use super::thresholds::{GRAZING, HIDDEN, HIGHLIGHT_REACH, SLIPPING};
 use crate::simd::{Real, SimdFloat};
 
-/// How wide a pixel is along rays: where they start, and how much wider at distance 1.
+/// Width of a pixel along rays: where they start, and how it changes with distance.
 #[derive(Clone, Copy, Debug)]
 pub struct RayCone<L> {
     /// Scene units.
     pub width: L,
-    /// Scene units per scene unit; below 0 where it narrows.
+    /// Scene units per scene unit; negative where the cone narrows.
     pub spread: L,
 }
 
-/// A pixel as it lies on a surface.
+/// The area of a surface that a pixel covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Footprint<L> {
-    /// Across the ray.
+    /// Its width across the ray.
     cone: RayCone<L>,
-    /// Along the surface.
+    /// Its length along the surface.
     length: L,
-    /// How far the surface's normal turns over that length.
+    /// Angle by which the surface's normal turns over that length.
     turn: L,
 }
 
 impl<L: SimdFloat> RayCone<L> {
-    /// How wide a pixel is at `t`.
+    /// Width of a pixel at distance `t`.
     #[inline(always)]
     pub fn width_at(&self, t: L) -> L {
         self.width + self.spread * t
     }
 
-    /// The cone that narrows nowhere.
+    /// The same cone, with the width kept constant where it would narrow.
     #[inline(always)]
     pub fn widening(&self) -> Self {
         Self {
@@ -41,8 +41,8 @@ impl<L: SimdFloat> RayCone<L> {
 }
 
 impl<L: SimdFloat> Footprint<L> {
-    /// The pixel around a ray that has gone as far as `t` and meets a surface of this curvature at this
-    /// cosine; where that is less than `grazing`, as long as at that.
+    /// The footprint of a ray that hits a surface of this curvature at distance `t` and this cosine; for the
+    /// length, cosines below `grazing` count as `grazing`.
     #[inline(always)]
     pub fn new(cone: RayCone<L>, (t, cosine, grazing): (L, L, L), curvature: L) -> Self {
         let width = cone.width_at(t);
@@ -54,7 +54,7 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
-    /// How wide a pixel is along the mirrored ray: a curved mirror spreads it.
+    /// The cone of the mirrored ray; a curved mirror spreads it.
     #[inline(always)]
     pub fn mirrored(&self) -> RayCone<L> {
         RayCone {
@@ -63,7 +63,7 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
-    /// The cone of the rays that go on from the surface to a light at this distance: it narrows to nothing there.
+    /// The cone of the rays from the surface to a light at this distance, where it narrows to a point.
     #[inline(always)]
     pub fn shadow(&self, distance: L) -> RayCone<L> {
         RayCone {
@@ -72,8 +72,8 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
-    /// The cone of those rays around what is looked at as one thing in meshes. On what stretches to the horizon, most of a
-    /// mesh would be one thing.
+    /// The cone of those rays around parts of meshes that are treated as one thing; it does not narrow. Its width
+    /// is limited: on a surface that stretches to the horizon, most of a mesh would be one thing.
     #[inline(always)]
     pub fn shadow_in_meshes(&self) -> RayCone<L> {
         let width = self.cone.width;
@@ -83,27 +83,26 @@ impl<L: SimdFloat> Footprint<L> {
         }
     }
 
-    /// How wide is what casts shadows between samples, at most.
+    /// Greatest width of things whose shadows may slip between samples.
     #[inline(always)]
     pub fn slipping(&self) -> L {
         self.length * self.length.like_f64(SLIPPING)
     }
 
-    /// How far inside of a shadow all of a pixel is in it.
+    /// Distance from the edge of a shadow beyond which a pixel is entirely inside of it.
     #[inline(always)]
     pub fn hidden(&self) -> L {
         self.length * self.length.like_f64(HIDDEN)
     }
 
-    /// How much wider a pixel becomes along the rays that come here.
+    /// The spread of the cone of the rays that arrive here.
     #[inline(always)]
     pub fn spread(&self) -> L {
         self.cone.spread
     }
 
-    /// How many pixels away a highlight is: half-vector and normal differ by `off`, its exponent
-    /// is 1/`size`², and the light is at this distance. Infinity for one that is wider than
-    /// [`SLIPPING`] pixels.
+    /// Distance in pixels to a highlight with exponent 1/`size`² whose light is at `light_distance`, where
+    /// half-vector and normal differ by `off`. Infinity for a highlight that is wider than [`SLIPPING`] pixels.
     #[inline(always)]
     pub fn highlight_distance(&self, size: f64, off: L, light_distance: L) -> L {
         let half = off.like_f64(0.5);
@@ -114,8 +113,8 @@ impl<L: SimdFloat> Footprint<L> {
     }
 }
 
-/// `beside / width` where the mask is set; infinity elsewhere, and inside, where a sample sees the
-/// thing itself.
+/// `beside / width` where the mask is set and `beside` is positive; infinity elsewhere. Where it is not positive, a
+/// sample sees the thing itself.
 #[inline(always)]
 pub fn pixels<L: SimdFloat>(mask: L::Mask, beside: L, width: L) -> L {
     let outside = mask & beside.like(L::Real::ZERO).less(beside);

@@ -1,4 +1,4 @@
-//! One depth of reflection: what its packets can meet, and what they see.
+//! One depth of reflection on the way forward: what its packets can meet, and what they see.
 
 use std::sync::Arc;
 
@@ -23,12 +23,13 @@ use crate::plan::{CulledFaces, HitOrder, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// So many packets are shown where to start in trees: to find that takes as long as the way of one of them. Two packets
-/// are most of what is traced again; with a start of their own a mesh of 100,000 faces takes 1.05 times as long.
+/// Least number of packets for which entry points into the trees are computed: computing them costs about as much
+/// as one packet's traversal. Most retraced samples come in two packets; with entry points for these, a mesh of
+/// 100,000 faces takes 1.05 times as long.
 const FEWEST_NARROWED: usize = 3;
 
 impl<L: SimdFloat> Bounce<L> {
-    /// Becomes the rays from the camera through the samples, which can meet what is in `seen`.
+    /// Becomes the camera rays through the samples, which can meet what is in `seen`.
     #[inline(always)]
     pub fn start<const TREE: bool>(
         &mut self,
@@ -51,10 +52,11 @@ impl<L: SimdFloat> Bounce<L> {
             let rays = Ray { origin, direction };
             self.packets.push(Packet::new(kernel, rays, active));
         }
-        // What looks for an edge inside of a pixel is not doubted: of what rounding may decide there, both sides are as
-        // near to it, and the pixel changes by a step of the finest grid, or by what is left of a cell that is not divided.
-        // That is more than a level in a pixel or some of 1 scene in 30, 7 at most; to doubt it takes meshes 1.2 times as
-        // long, and a mirror with a mesh 1.4 times.
+        // Samples that search for an edge inside a pixel are not doubted. Where rounding may decide what they see,
+        // both sides of the edge are equally near: the pixel changes by one step of the finest grid, or by what
+        // remains of a cell that is not divided. In 1 scene of 30, this is more than one level, and at most 7, in
+        // one pixel or a few; doubting them would make meshes take 1.2 times as long, and a mirror with a mesh 1.4
+        // times.
         let is_doubted = edges != EdgeDetail::Signed && kernel.plan.is_doubted();
         if is_filtered::<L, TREE>() && is_doubted {
             let uncertainty = Uncertainty::new(token, kernel.plan);
@@ -71,12 +73,12 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Whether what may slip between samples is looked for.
+    /// Returns whether things that may slip between samples are looked for.
     fn looks_for_thin(&self) -> bool {
         self.edges_are == EdgeDetail::Near
     }
 
-    /// What the rays of a packet start on.
+    /// Returns the primitives on which the rays of a packet start.
     #[inline(always)]
     fn ignored_by<const TREE: bool>(
         &self,
@@ -92,7 +94,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// The faces of meshes that the rays of the packets do without.
+    /// For each mesh, the faces that the rays of the packets need not be tested against; empty for none.
     fn unseen_by<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<CulledFaces>>] {
         if self.parents.is_empty() {
             &plan.unseen_faces
@@ -101,7 +103,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Finds what the packets meet, and what can cast shadows there. Whether there is anything.
+    /// Finds what the packets hit, and what can cast shadows there. Returns whether anything is to be shaded.
     #[inline(always)]
     pub fn find<const TREE: bool>(
         &mut self,
@@ -112,7 +114,7 @@ impl<L: SimdFloat> Bounce<L> {
             return false;
         }
         let plan = kernel.plan;
-        // What is thin beside the rays may be there where they meet nothing.
+        // Something thin may be next to rays that hit nothing.
         self.find_thin(plan);
         self.enter(kernel);
         let infinity = kernel.infinity();
@@ -146,16 +148,16 @@ impl<L: SimdFloat> Bounce<L> {
             }
         }
         let Some(mut ball) = bounds.ball() else {
-            // Where mirrors are shown, what shows none is dark, the sky too.
+            // If mirrors are shown, everything else becomes black, including the sky.
             return !self.thin.is_empty() || plan.show == Show::Mirrors;
         };
         let mut lift = L::Real::ZERO;
         if let Some((geometry, _)) = kernel.geometry() {
-            // Rays go on from the curved surfaces that flat faces stand for.
+            // Rays go on from the curved surfaces that flat faces approximate.
             lift = geometry.lift * L::Real::from_f64(1.0 + CAUTION);
             ball.radius += lift.to_f64();
         }
-        // Hits may be off, on what is large most of all.
+        // Hits may be off, most of all on large things.
         let farthest = farthest.greatest();
         let off = if self.uncertainties.is_empty() {
             L::Real::ZERO
@@ -167,7 +169,7 @@ impl<L: SimdFloat> Bounce<L> {
         };
         ball.radius += off.to_f64();
         if plan.screen.is_some() {
-            // Room for what passes beside the rays to the lights, closer than a pixel.
+            // Includes what shadow rays pass at less than a pixel's distance.
             let footprint = if self.looks_for_thin() {
                 Some(self.longest(kernel))
             } else {
@@ -177,7 +179,7 @@ impl<L: SimdFloat> Bounce<L> {
                 kernel.keep_between(between, light, (&ball, footprint), scratch);
             }
             if TREE && self.is_worth_narrowing() {
-                // A ray that has come far is off by a few roundings of its length.
+                // The hit of a long ray is off by a few roundings of its length.
                 let hits = bounds.around().widened(farthest * roundings() + lift + off);
                 for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
                     kernel.enter_towards(between, light, (&hits, footprint));
@@ -187,12 +189,12 @@ impl<L: SimdFloat> Bounce<L> {
         true
     }
 
-    /// Whether there are so many packets that the way which all of them go into trees is worth finding.
+    /// Returns whether there are enough packets to make entry points into the trees worthwhile.
     fn is_worth_narrowing(&self) -> bool {
         self.packets.len() >= FEWEST_NARROWED
     }
 
-    /// Finds where the packets can start to look into the trees, and whether something thin may slip between them there.
+    /// Finds where the packets enter the trees, and whether something thin may slip between their rays there.
     #[inline(always)]
     fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
         self.entry_points.forget();
@@ -224,8 +226,8 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Finds what rays from the camera can meet, or just miss, between samples; nothing without
-    /// edges. For mirrored rays, [`Self::aim`] knows.
+    /// Finds what camera rays can meet, or just miss, between samples; nothing unless that is looked for. For
+    /// mirrored rays, [`Self::aim`] does this.
     fn find_thin(&mut self, plan: &Plan<L::Real>) {
         if !self.looks_for_thin() {
             self.thin.clear();
@@ -237,7 +239,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// How wide a pixel is along the rays at most: where they start, and how much more at distance 1; zero without
+    /// Greatest width of a pixel where the rays start, and its greatest growth per unit of distance; zero without
     /// edges.
     #[inline(always)]
     fn widest_cone<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> (L::Real, L::Real) {
@@ -249,7 +251,7 @@ impl<L: SimdFloat> Bounce<L> {
         (width.greatest(), spread.greatest())
     }
 
-    /// The longest pixel at what was hit, at most; zero without edges.
+    /// Greatest length of a pixel's footprint on what was hit; zero without edges.
     #[inline(always)]
     fn longest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
         let mut longest = kernel.splat(0.0);
@@ -262,7 +264,7 @@ impl<L: SimdFloat> Bounce<L> {
         longest.greatest() * L::Real::from_f64(1.0 + CAUTION)
     }
 
-    /// Shades the packets; `next` gets the rays that mirrors send on.
+    /// Shades the packets; adds the rays that mirrors send on to `next`.
     #[inline(always)]
     pub fn shade<const TREE: bool>(
         &mut self,
@@ -337,7 +339,7 @@ impl<L: SimdFloat> Bounce<L> {
             return kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
         }
         let (width, spread) = self.widest_cone(kernel);
-        // Room for what passes beside the rays, closer than a pixel.
+        // Includes what the rays pass at less than a pixel's distance.
         let wide = beam.widened(width, spread);
         kernel.keep_met(
             &mut self.seen,
@@ -357,7 +359,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// The plane that all rays start on, if they all start on one.
+    /// The plane on which all rays start, if there is one.
     fn start_plane(&self, plan: &Plan<L::Real>) -> Option<usize> {
         let first = self.parents.first()?.ignored.shared()?;
         let mut parents = self.parents.iter();
@@ -366,7 +368,7 @@ impl<L: SimdFloat> Bounce<L> {
         (is_shared && plane < plan.primitives.planes.len()).then_some(plane)
     }
 
-    /// Makes packets of hits that are close to each other, where the plan asks for it.
+    /// Regroups nearby hits into the same packets, if the plan asks for it.
     #[inline(always)]
     pub fn arrange<const TREE: bool>(
         &mut self,

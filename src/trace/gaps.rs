@@ -1,4 +1,4 @@
-//! Which shadows hits are in that end near them: between two of those there may be light, or none.
+//! Shadows that hits are in and that end nearby: between two of these, there may be light or none.
 
 use super::candidates::Targets;
 use super::cull::LightCandidates;
@@ -15,9 +15,9 @@ use crate::scene::Methods;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Whether there may be gaps between two shadows, of one light or of two.
+    /// Returns whether there may be gaps between two shadows, of one light or of two.
     ///
-    /// Apart: inside of the kernel it costs the demo, which asks in few tiles, a twelfth of its time.
+    /// Not inlined: inside the kernel, it makes the demo, which asks in few tiles, slower by a twelfth.
     #[inline(never)]
     pub fn may_leave_gaps(self, lights: &[LightCandidates]) -> bool {
         let mut shadows = 0;
@@ -30,10 +30,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         1 < shadows
     }
 
-    /// The marks of casters, see [`super::shadows`], in whose shadows hits of this material are; `lit` tells which
-    /// lights shine there. Tiles leave out different casters, and the marks are the same in all of them.
+    /// Returns the marks of the casters, see [`super::shadows`], in whose shadows hits of this material are; `lit`
+    /// says which lights shine there. Tiles leave out different casters, but the marks are the same in all of them.
     ///
-    /// Apart: few packets need it, and the others are quicker without.
+    /// Not inlined: few packets need it, and the others are faster without.
     #[inline(never)]
     pub fn shadows_at(
         self,
@@ -60,7 +60,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let to_light = hit.surface.point.like(light.position) - hit.surface.point;
                     let distance = to_light.length();
                     let direction = to_light * (self.splat(1.0) / distance);
-                    // The shadow of a light that nobody sees is not seen either.
+                    // If the light itself is too faint to be seen there, its shadow is not visible.
                     let normal = hit.surface.normal;
                     let cosine = normal.dot(direction);
                     let from = (cosine, normal, direction - view);
@@ -92,7 +92,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         )
     }
 
-    /// Where a light shines, by the sum of their bits.
+    /// Returns where a light shines, given the sums of the bits of all lights that do.
     #[inline(always)]
     fn is_lit(self, lit: L, light: usize) -> L::Mask {
         let mut sums = [L::Real::ZERO; MAX_LANES];
@@ -103,7 +103,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self.splat(0.0).less(L::load(self.token, &sums))
     }
 
-    /// The mark of the caster that paths are deepest behind; 0 where one hides all of a pixel, or there is none.
+    /// Returns the mark of the caster that the paths pass deepest inside its outline; 0 where a caster hides the
+    /// whole pixel, or there is none.
     #[inline(always)]
     fn deepest(
         self,
@@ -123,16 +124,16 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// Looks for the caster that ways are deepest behind.
+/// Looks for the caster that the paths pass deepest inside its outline.
 struct DepthTest<'a, L: SimdFloat> {
     methods: &'a Methods,
-    /// How far the ways go.
+    /// Length of the paths.
     distance: L,
-    /// What is deeper inside of an outline hides all of a pixel.
+    /// Depth inside an outline beyond which the caster hides the whole pixel.
     deep: L,
-    /// Where nothing was met yet that hides all of a pixel.
+    /// Where nothing was found yet that hides the whole pixel.
     free: L::Mask,
-    /// How far inside of an outline the ways are, and the mark of what that is of.
+    /// Greatest depth of the paths inside an outline so far, and the mark of that caster.
     deepest: L,
     caster: L,
 }
@@ -175,7 +176,7 @@ impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
     }
 }
 
-/// How far inside of the outline of a primitive paths are that meet it, in scene units; `None` for one without an
+/// Depth inside the outline of a primitive of the paths that hit it, in scene units; `None` if the primitive has no
 /// outline of its own.
 #[inline(always)]
 fn depth<L: SimdFloat, P: Primitive<L::Real>>(

@@ -1,5 +1,4 @@
-//! Small things that look alike, put together so that rays which have met different ones are lit as one
-//! packet.
+//! Gathers the data of small, similar primitives, so that rays which have hit different ones are lit as one packet.
 
 use super::columns::{Columns, CurvedColumns};
 use super::mixed_materials::MixedMaterials;
@@ -9,12 +8,12 @@ use crate::primitive::{
 };
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
-/// A primitive in a tree, and what it must have in common with others to be lit with them.
+/// A primitive in a tree, and what it must have in common with others to be lit together.
 pub struct HitPrimitive<'a, R> {
     form: Form<'a, R>,
     /// Index into [`crate::plan::Plan::materials`].
     pub material: u32,
-    /// The mesh that it belongs to.
+    /// The mesh that it belongs to, if any.
     mesh: Option<&'a MeshInstance<R>>,
 }
 
@@ -25,8 +24,8 @@ enum Form<'a, R> {
 }
 
 impl<'a, R: Real> HitPrimitive<'a, R> {
-    /// The primitive of a number, counted from the geometry's first; `None` for a kind that is shaded by
-    /// itself.
+    /// Returns the primitive with this number, counted from the geometry's first; `None` for a kind that is shaded
+    /// separately.
     #[inline(always)]
     pub fn of(geometry: &'a Geometry<R>, index: usize) -> Option<Self> {
         if let Some(mesh) = geometry.mesh_of(index) {
@@ -43,7 +42,7 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
             });
         }
         let loose = &geometry.primitives;
-        // Planes stand in no tree: spheres are first.
+        // There are no planes in trees, so that spheres come first.
         let (form, material) = if let Some(sphere) = loose.spheres.get(index) {
             (Form::Round(sphere), sphere.material)
         } else {
@@ -57,7 +56,7 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
         })
     }
 
-    /// The triangle, if it looks as flat as it is, and the point that its corners count from.
+    /// The triangle, if it is shaded flat or its corner normals are alike, and the origin of its corners' coordinates.
     pub fn flat(&self) -> Option<(&'a PackedTriangle<R>, Vec3<R>)> {
         let triangle = match self.form {
             Form::Flat(triangle) => triangle,
@@ -68,7 +67,7 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
         Some((triangle, origin.unwrap_or(Vec3::splat(R::ZERO))))
     }
 
-    /// Whether it is lit in the same way.
+    /// Returns whether another primitive can be lit together with this one.
     #[inline(always)]
     pub fn is_like(&self, other: &Self) -> bool {
         let is_same_form = matches!(
@@ -86,21 +85,22 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
     }
 }
 
-/// What is needed of primitives where they are hit, lane by lane.
+/// The data of primitives that their hits need, lane by lane.
 pub struct Gathered<R> {
-    /// A corner, or the middle.
+    /// A corner, or the centre.
     place: Columns<R>,
     normal: Columns<R>,
-    /// Whether it is in a mesh, and its longest edge; or the radius, and one over it.
+    /// Of a triangle, 1 if it shares a corner with others, else 0, and the longest edge; of a sphere, the radius
+    /// and one over it.
     measures: [[R; MAX_LANES]; 2],
-    /// What is needed of faces that are shaded as if they were curved, if they are.
+    /// Data for smooth shading, if the faces are shaded smoothly.
     curved: Option<CurvedColumns<R>>,
-    /// 1 more than the index of the material where there is something, else 0.
+    /// 1 plus the index of the material in lanes that have a primitive, else 0.
     materials: [R; MAX_LANES],
 }
 
 impl<R: Real> Gathered<R> {
-    /// Nothing in any lane, and room for what is like a primitive.
+    /// Creates it with all lanes empty, for primitives like this one.
     #[inline(always)]
     pub fn like(hit_primitive: &HitPrimitive<R>) -> Self {
         let zeros = [R::ZERO; MAX_LANES];
@@ -117,7 +117,7 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// Puts a primitive into a lane.
+    /// Sets the primitive of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, hit_primitive: &HitPrimitive<R>) {
         self.materials[lane] = R::from_f64(f64::from(hit_primitive.material) + 1.0);
@@ -145,13 +145,13 @@ impl<R: Real> Gathered<R> {
         self.measures[1][lane] = triangle.longest;
     }
 
-    /// Where there is something.
+    /// Returns which lanes have a primitive.
     #[inline(always)]
     pub fn mask<L: SimdFloat<Real = R>>(&self, token: L::Token) -> L::Mask {
         L::splat(token, R::ZERO).less(L::load(token, &self.materials))
     }
 
-    /// `mixed` become the materials.
+    /// Sets `mixed` to the materials in all lanes.
     #[inline(always)]
     pub fn part<L: SimdFloat<Real = R>>(&self, token: L::Token, mixed: &mut MixedMaterials<L>) {
         mixed.clear();
@@ -165,7 +165,7 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// The hits at `t` on primitives that are like one.
+    /// Returns the hits at `t` on primitives like this one.
     #[inline(always)]
     pub fn refine<L: SimdFloat<Real = R>>(
         &self,
@@ -201,7 +201,7 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// The hits on faces of a mesh, which are met from the mesh's own middle.
+    /// Returns the hits on faces of a mesh, which are computed in coordinates relative to the mesh's centre.
     #[inline(always)]
     fn refine_in_mesh<L: SimdFloat<Real = R>>(
         &self,
@@ -217,7 +217,7 @@ impl<R: Real> Gathered<R> {
         };
         let mut surface = flat.refine(&local, t);
         let point = surface.point + centre;
-        // Back in the world's coordinates it is rounded once more, and again where the next ray sets out.
+        // Conversion to world coordinates adds a rounding, and so does the start of the next ray.
         let world = (point.max_abs() + centre.max_abs()) * t.like(R::UNIT_ROUNDOFF);
         surface.slack = surface.slack + (world + world);
         surface.size = surface.size + point.max_abs();

@@ -1,8 +1,8 @@
-//! Counts as colours.
+//! Heat map: counts as colours.
 
 use crate::simd::Real;
 
-/// Colours of equal steps from black to white, each brighter than the one before: red, green and blue, 0–1.
+/// Colours at equal steps from black to white, each brighter than the previous one: red, green and blue, 0–1.
 const STEPS: [[f64; 3]; 6] = [
     [0.0, 0.0, 0.02],
     [0.27, 0.04, 0.42],
@@ -11,10 +11,10 @@ const STEPS: [[f64; 3]; 6] = [
     [0.98, 0.79, 0.28],
     [1.0, 1.0, 0.93],
 ];
-/// The count that is white; 1 is black.
+/// The count that is shown white; 1 is black.
 const MOST: f64 = 1000.0;
 
-/// The colour of a count: equal factors are equal steps.
+/// Returns the colour of a count, on a logarithmic scale.
 pub fn heat<R: Real>(count: f64) -> [R; 3] {
     let last = STEPS.len() - 1;
     let at = (count.max(1.0).ln() / MOST.ln()).min(1.0) * last as f64;
