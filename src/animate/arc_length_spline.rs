@@ -1,43 +1,43 @@
-//! A curve in space through points, by length.
+//! Spatial curves through points, parameterized by arc length.
 
 use glam::DVec3;
 
 use super::Closing;
 
-/// Pieces of a segment whose lengths are kept.
+/// Number of pieces of a segment whose lengths are stored.
 const PIECES: usize = 16;
 
-/// A centripetal Catmull–Rom spline, the only one of its family without cusps and loops within a
-/// segment. Points that follow each other in the same place count once.
+/// A centripetal Catmull–Rom spline, the only one of its family without cusps and loops within a segment.
+/// Consecutive equal points count as one.
 ///
-/// Yuksel, Schaefer and Keyser, "Parameterization and applications of Catmull–Rom curves",
-/// Computer-Aided Design 43, 2011.
+/// Yuksel, Schaefer and Keyser, "Parameterization and applications of Catmull–Rom curves", Computer-Aided Design
+/// 43, 2011.
 #[derive(Clone, Debug)]
 pub struct ArcLengthSpline {
     segments: Vec<Segment>,
-    /// Length up to each of the given points, in world units.
+    /// Arc length up to each of the given points, in world units.
     reached: Vec<f64>,
 }
 
-/// A cubic from one point to the next, with its lengths.
+/// A cubic from one point to the next, with tabulated arc lengths.
 #[derive(Clone, Debug)]
 struct Segment {
     ends: [DVec3; 2],
-    /// Directions at the ends, per run of the whole segment.
+    /// Derivatives at the ends, with respect to the parameter from 0 to 1.
     tangents: [DVec3; 2],
-    /// Length before it.
+    /// Arc length of all segments before it.
     start: f64,
-    /// Length from its start to the end of each piece, from 0.
+    /// Arc length from the start of the segment to the end of each piece; the first entry is 0.
     lengths: [f64; PIECES + 1],
 }
 
 impl ArcLengthSpline {
-    /// A curve through `points`; at least one.
+    /// Creates a curve through `points`, of which there must be at least one.
     pub fn new(points: &[DVec3], closing: Closing) -> Self {
         let mut stops: Vec<DVec3> = Vec::new();
         let mut places = Vec::new();
         for &point in points {
-            // A distance that is too small to be squared is none.
+            // A distance whose square underflows counts as zero.
             if stops
                 .last()
                 .is_none_or(|last| (point - *last).length() > 0.0)
@@ -74,12 +74,12 @@ impl ArcLengthSpline {
         Self { segments, reached }
     }
 
-    /// Length up to each of the points, in world units.
+    /// Arc length up to each of the given points, in world units.
     pub fn reached(&self) -> &[f64] {
         &self.reached
     }
 
-    /// The place after a length; `None` for a route of one point.
+    /// Returns the position at an arc length; `None` for a curve through a single point.
     pub fn at(&self, length: f64) -> Option<DVec3> {
         let after = self
             .segments
@@ -91,7 +91,7 @@ impl ArcLengthSpline {
 
 impl Segment {
     fn new([before, from, to, after]: [DVec3; 4], start: f64) -> Self {
-        // Knots are apart by the roots of the distances.
+        // Distances between knots are the square roots of the distances between points.
         let knot = |a: DVec3, b: DVec3| (b - a).length().sqrt();
         let (left, here, right) = (knot(before, from), knot(from, to), knot(to, after));
         let slope = |a: DVec3, b: DVec3, c: DVec3, ab: f64, bc: f64| {
@@ -117,7 +117,7 @@ impl Segment {
         self.lengths[PIECES]
     }
 
-    /// The place at a share (0–1) of the parameter: Hermite's cubic.
+    /// Returns the position at a parameter from 0 to 1: a cubic Hermite polynomial.
     fn at(&self, share: f64) -> DVec3 {
         let [from, to] = self.ends;
         if share >= 1.0 {
@@ -136,7 +136,7 @@ impl Segment {
         (direct + out + into * (share * (3.0 * share - 2.0))).length()
     }
 
-    /// Length between two shares, by Gauss's rule with three places.
+    /// Returns the arc length between two parameters, by three-point Gauss–Legendre quadrature.
     fn between(&self, from: f64, to: f64) -> f64 {
         let (half, middle) = ((to - from) / 2.0, f64::midpoint(from, to));
         let off = half * 0.6_f64.sqrt();
@@ -144,7 +144,7 @@ impl Segment {
         half * (5.0 * outer + 8.0 * self.speed(middle)) / 9.0
     }
 
-    /// The share of the parameter at which this length is reached.
+    /// Returns the parameter at which an arc length is reached.
     fn share(&self, length: f64) -> f64 {
         if length >= self.length() {
             return 1.0;

@@ -1,18 +1,17 @@
-//! A number over time that passes through its keys without overshooting them.
+//! Interpolation of a number over time without overshoot.
 
-/// How a run of keys ends.
+/// Boundary condition at the ends of a run of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Closing {
-    /// It starts and stops.
+    /// The run starts and stops.
     Open,
-    /// Its end is its start: what comes after the last key is as after the first.
+    /// The end is the start again: after the last key, it continues as after the first.
     Closed,
 }
 
-/// A monotone cubic through (time, value): between two keys it never leaves their values.
+/// A monotone cubic interpolant of (time, value) pairs: between two keys it stays between their values.
 ///
-/// Steffen, "A simple method for monotonic interpolation in one dimension", Astronomy and
-/// Astrophysics 239, 1990.
+/// Steffen, "A simple method for monotonic interpolation in one dimension", Astronomy and Astrophysics 239, 1990.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     times: Vec<f64>,
@@ -21,7 +20,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve through `values` at `times`, which grow strictly. At least one of each.
+    /// Creates a curve through `values` at strictly increasing `times`. There must be at least one of each.
     pub fn new(times: Vec<f64>, values: Vec<f64>, closing: Closing) -> Self {
         let last = times.len() - 1;
         let secant = |i: usize| (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
@@ -50,19 +49,19 @@ impl Curve {
         }
     }
 
-    /// The value at a share `along` (0–1) of the way from key `i` to the next.
+    /// Returns the value at a share `along` (0–1) of the time from key `i` to the next.
     pub fn at(&self, i: usize, along: f64) -> f64 {
         let (from, to) = (self.values[i], self.values[i + 1]);
         let step = self.times[i + 1] - self.times[i];
         let rest = 1.0 - along;
-        // Hermite's cubic, from the first value on: between equal values without slopes it is
-        // exactly that value.
+        // Cubic Hermite polynomial, written relative to the first value: between equal values with zero slopes it
+        // is exact.
         let bend = rest * self.slopes[i] - along * self.slopes[i + 1];
         from + (to - from) * along * along * (3.0 - 2.0 * along) + step * along * rest * bend
     }
 }
 
-/// The slope at an inner key between two secants over steps of time.
+/// Returns the slope at an inner key, from the time steps and secant slopes on both sides.
 fn steffen(before: f64, after: f64, left: f64, right: f64) -> f64 {
     let parabola = (left * after + right * before) / (before + after);
     let steepest = left.abs().min(right.abs()).min(parabola.abs() / 2.0);
@@ -70,7 +69,7 @@ fn steffen(before: f64, after: f64, left: f64, right: f64) -> f64 {
     (sign(left) + sign(right)) * steepest
 }
 
-/// The slope at an end: that of the parabola through three keys, held back like the others.
+/// Returns the slope at an end: that of the parabola through the last three keys, limited like the others.
 fn end(near: f64, far: f64, secant: f64, next: f64) -> f64 {
     let slope = secant * (1.0 + near / (near + far)) - next * near / (near + far);
     if slope * secant <= 0.0 {

@@ -1,9 +1,9 @@
-//! From keys and a time to a scene that stands still: interpolation, takes and their keys, timing,
-//! ready-made flights.
+//! Evaluates the animation of a scene at a time: interpolation of keys, conversion of takes to keys, retiming, and
+//! preset flights.
 //!
-//! Positions follow centripetal splines ([`ArcLengthSpline`]) at a pace that is monotone in time ([`Curve`]);
-//! directions are yaw, pitch and roll, turned the shorter way. At the time of a key, everything is
-//! exactly what the key says.
+//! Positions follow centripetal splines ([`ArcLengthSpline`]), with speed given by monotone curves ([`Curve`]).
+//! Orientations are interpolated as yaw, pitch and roll, each turning the shorter way. At the time of a key, all
+//! values are exactly those of the key.
 
 mod curve;
 

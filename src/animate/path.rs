@@ -1,4 +1,4 @@
-//! The camera over time.
+//! The camera as a function of time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,38 +7,39 @@ use glam::DVec3;
 use super::{ArcLengthSpline, Closing, Curve};
 use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME};
 
-/// How near to the axis of an orbit a place counts as on it, as a share of how far the other is.
+/// Distance from the axis of an orbit below which a position counts as on it, as a share of the other end's
+/// distance.
 const ON_AXIS: f64 = 1e-9;
 
-/// Keys, ready to be asked for the camera at any time.
+/// Camera keys prepared for evaluation at any time.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
     keys: Vec<Key<Camera>>,
-    /// Yaw, pitch and roll of the keys, each the nearest to the one before: a turn never takes the
-    /// longer way.
+    /// Yaw, pitch and roll of the keys, each with the full turns that make it nearest to the one before, so that
+    /// the camera never turns the longer way.
     angles: Vec<Orientation>,
-    /// For each segment that is smooth, its run and its place in that.
+    /// For each smooth segment, the index of its run and its index in that run; `None` for other segments.
     smooth: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
 }
 
-/// Smooth segments one after the other.
+/// Consecutive smooth segments.
 #[derive(Clone, Debug)]
 struct Run {
     route: ArcLengthSpline,
-    /// Length over time.
+    /// Arc length over time.
     pace: Curve,
     yaw: Curve,
     pitch: Curve,
     roll: Curve,
-    /// Logarithm of the projection distance.
+    /// Logarithm of the projection distance over time.
     zoom: Curve,
-    /// Logarithm of the orthographic height.
+    /// Logarithm of the orthographic height over time.
     height: Curve,
 }
 
 impl CameraPath {
-    /// The path through `keys`, which are in order of time.
+    /// Creates the path through `keys`, which are in order of time.
     pub fn new(keys: &[Key<Camera>]) -> Self {
         let angles = unwound(keys.iter().map(|key| Orientation::of(&key.value)));
         let mut path = Self {
@@ -66,7 +67,7 @@ impl CameraPath {
     fn run(&self, start: usize, end: usize) -> Run {
         let keys = &self.keys[start..=end];
         let angles = &self.angles[start..=end];
-        // Only a flight that is one run from its start to its end can be a round.
+        // Only a flight that is a single run from start to end can be closed.
         let is_whole = start == 0 && end + 1 == self.keys.len();
         let closing = if is_whole && is_round(&keys[0].value, &keys[keys.len() - 1].value) {
             Closing::Closed
@@ -96,8 +97,8 @@ impl CameraPath {
         &self.keys
     }
 
-    /// The camera at `time` in seconds: before the first key as there, after the last as there;
-    /// `None` without keys. At the time of a key it is that key's camera, bit by bit.
+    /// Returns the camera at `time` in seconds; before the first and after the last key, it is that of the key.
+    /// `None` without keys. At the time of a key, the result is exactly that key's camera.
     pub fn at(&self, time: f64) -> Option<Camera> {
         let after = self.keys.partition_point(|key| key.time <= time);
         let Some(i) = after.checked_sub(1) else {
@@ -142,7 +143,7 @@ impl CameraPath {
         })
     }
 
-    /// `i` is the segment's place in the path, `place` that in its run.
+    /// Returns the camera on the smooth segment `i` of the path, which is segment `index` of its run.
     fn on_curve(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
         let position = match run.route.at(run.pace.at(index, along)) {
@@ -172,7 +173,7 @@ impl CameraPath {
             ),
             ..from.clone()
         };
-        // Angles that stay keep the key's own vectors: what is held is held bit by bit.
+        // Without rotation, the key's own vectors are kept, so that a constant orientation is exactly constant.
         if turned == start {
             camera
         } else {
@@ -181,7 +182,7 @@ impl CameraPath {
     }
 }
 
-/// The share of the way that is done at a share of the time.
+/// Returns the share of the path covered after a share `along` of the time.
 pub(super) fn eased(easing: Easing, along: f64) -> f64 {
     match easing {
         Easing::Even => along,
@@ -191,13 +192,13 @@ pub(super) fn eased(easing: Easing, along: f64) -> f64 {
     }
 }
 
-/// The place at a share of an arc around the vertical axis through `around`: angle, radius and
-/// height change evenly, the angle the shorter way. From the axis, and to it, the way is straight.
+/// Returns the position at a share of an arc around the vertical axis through `around`. Angle, radius and height
+/// change uniformly, the angle in the shorter direction. From and to a point on the axis, the path is straight.
 pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 {
     let (start, end) = (from - around, to - around);
     let angle = |v: DVec3| v.z.atan2(v.x);
     let (near, far) = (start.x.hypot(start.z), end.x.hypot(end.z));
-    // A place on the axis has no angle but that of rounding.
+    // The angle of a point on the axis is only rounding noise.
     let is_on_axis = near.min(far) <= ON_AXIS * near.max(far);
     let (first, turn) = if is_on_axis {
         (angle(if near < far { end } else { start }), 0.0)
@@ -210,14 +211,14 @@ pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 
     around + DVec3::new(radius * cosine, height, radius * sine)
 }
 
-/// The turn to the same direction that is no longer than half a round.
+/// Returns the equivalent angle of at most half a turn.
 fn shorter(turn: f64) -> f64 {
     let wound = (turn + PI).rem_euclid(TAU) - PI;
-    // Half a round is the same to both sides: to the right.
+    // Half a turn is equally long in both directions: the positive one is chosen.
     if wound == -PI { PI } else { wound }
 }
 
-/// Each angle moved by whole rounds to be the nearest to the one before it.
+/// Adds full turns to each angle, so that it is nearest to the one before.
 pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientation> {
     let mut unwound: Vec<Orientation> = Vec::new();
     for angles in angles {
@@ -234,7 +235,7 @@ pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientat
     unwound
 }
 
-/// `angle` plus whole rounds; itself where none is needed, bit by bit.
+/// Adds full turns to `angle`, so that it is nearest to `to`. If none are needed, it is returned unchanged.
 pub(super) fn nearest(angle: f64, to: f64) -> f64 {
     let turn = angle - to;
     if turn.abs() < PI {
@@ -244,7 +245,7 @@ pub(super) fn nearest(angle: f64, to: f64) -> f64 {
     }
 }
 
-/// Whether a flight from one to the other comes back to where it began.
+/// Returns whether both cameras are the same, so that a flight from one to the other is closed.
 fn is_round(first: &Camera, last: &Camera) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9;
     let (a, b) = (Orientation::of(first), Orientation::of(last));

@@ -1,4 +1,4 @@
-//! The scene at a time.
+//! The scene at a given time.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::path::{eased, orbit};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
 use crate::scene::{Camera, Interpolation, Key, Owners, Projection, SAME_TIME, Scene, Value};
 
-/// The scene as it is at `time` in seconds, seen by its own camera: every track has set its value.
+/// Returns the scene at `time` in seconds, with the values of all tracks applied. The camera is unchanged.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
     if scene.animation.tracks.is_empty() {
         return Arc::clone(scene);
@@ -24,8 +24,8 @@ pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
     Arc::new(posed)
 }
 
-/// The scene as the animation shows it at `time`: posed, and through the camera of the keys, if
-/// there are any.
+/// Returns the scene as the animation shows it at `time`: like [`pose`], with the camera of the path, if it has
+/// keys.
 pub fn shot(scene: &Arc<Scene>, path: &CameraPath, time: f64) -> Arc<Scene> {
     let mut posed = pose(scene, time);
     if let Some(camera) = path.at(time)
@@ -36,7 +36,7 @@ pub fn shot(scene: &Arc<Scene>, path: &CameraPath, time: f64) -> Arc<Scene> {
     posed
 }
 
-/// The value of a track's keys; `None` without keys.
+/// Returns the value of a track at a time; `None` without keys.
 fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
     let after = keys.partition_point(|key| key.time <= time);
     let Some(i) = after.checked_sub(1) else {
@@ -70,13 +70,14 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
             Value::Point(orbit(around, a, b, along))
         }
         (Value::Point(a), Value::Point(b), _) => Value::Point(a + (b - a) * along),
-        // A checked track has values of one kind.
+        // Tracks that passed validation have values of one type.
         _ => from.value,
     })
 }
 
-/// The keys that a smooth segment is shaped by, and its place among them: those around it, and one more on each side
-/// that shapes the ways to them, which is at another place than they are. Of a long run, these are few.
+/// Returns the keys that determine a smooth segment, and its index among them: its ends, their neighbours, and on
+/// each side one more key, at a different position, that shapes the neighbouring segments. These are few even in a
+/// long run.
 fn run_around(keys: &[Key<Value>], segment: usize) -> (&[Key<Value>], usize) {
     let is_smooth = |key: usize| keys[key].interpolation == Interpolation::Smooth;
     let is_place_of = |key: usize, other: usize| keys[key].value == keys[other].value;
@@ -111,24 +112,24 @@ fn point(value: Value) -> DVec3 {
     }
 }
 
-/// How far a camera moves, turns and zooms from one frame to the next.
+/// Change of the camera from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraChange {
-    /// World units.
+    /// Distance in world units.
     pub distance: f64,
-    /// Degrees that it turns by, about whatever axis.
+    /// Angle of rotation in degrees, about any axis.
     pub turn: f64,
-    /// The natural logarithm of how many times as large or as small things become by its lens.
+    /// Absolute natural logarithm of the factor by which the lens changes the size of things.
     pub zoom: f64,
 }
 
-/// The step from one camera to another.
+/// Returns the change from one camera to another.
 pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     let (Some(a), Some(b)) = (from.basis(), to.basis()) else {
         return CameraChange::default();
     };
-    // Where axes turn by an angle about any line, the squares of their differences add up to 8 sin² of its half, and
-    // those of their sums to 8 cos² of it and 4. Accurate for small angles too, where a trace is not.
+    // For a rotation by an angle θ about any axis, the squared differences of the basis vectors add up to 8
+    // sin²(θ/2), and those of their sums to 8 cos²(θ/2) + 4. Unlike the trace, this is accurate for small angles.
     let axes = [
         (a.x_axis, b.x_axis),
         (a.y_axis, b.y_axis),
@@ -147,7 +148,7 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
             (Projection::Orthographic, Projection::Orthographic) => {
                 (to.orthographic_height / from.orthographic_height).ln()
             }
-            // A cut.
+            // A change of projection is a cut.
             _ => 0.0,
         }
         .abs(),
@@ -160,7 +161,7 @@ mod tests {
     use crate::scene::Animation;
     use proptest::prelude::*;
 
-    /// Few places, so that keys stay where they are for a while, and smooth segments with others between them.
+    /// Keys at few positions, so that successive ones often coincide, with some segments that are not smooth.
     fn any_keys() -> impl Strategy<Value = Vec<Key<Value>>> {
         let key = (0.1..2.0_f64, 0..3_i32, 0..2_i32, prop::bool::weighted(0.9));
         prop::collection::vec(key, 2..30).prop_map(|keys| {
@@ -195,7 +196,7 @@ mod tests {
         assert_eq!(Animation::frames_in(0.333_33, 30.0), 10);
     }
 
-    /// The whole run that a segment is in.
+    /// Returns the whole run of a segment, and the segment's index in it.
     fn run(keys: &[Key<Value>], segment: usize) -> (&[Key<Value>], usize) {
         let is_smooth = |key: &Key<Value>| key.interpolation == Interpolation::Smooth;
         let before = keys[..segment].iter().rev();

@@ -1,4 +1,4 @@
-//! Ready-made flights around or along what is selected.
+//! Preset flights around or along the selection.
 
 use std::f64::consts::TAU;
 
@@ -6,18 +6,18 @@ use glam::DVec3;
 
 use crate::scene::{Camera, Interpolation, Key, Orientation};
 
-/// Keys of a round that is drawn by splines. A centripetal spline leaves a circle through so many
-/// points by 1/9000 of its radius.
+/// Number of segments of a closed path of splines. A centripetal spline through this many points of a circle
+/// deviates from it by 1/9000 of its radius.
 const ROUND_KEYS: usize = 24;
-/// How much longer than deep the ellipse and the eight are.
+/// Ratio of width to depth of the ellipse; the figure eight is half as wide.
 const OBLONG: f64 = 1.6;
-/// How far dolly and crane go, in shares of the distance to the target.
+/// Length of dolly and crane moves, as a share of the distance to the target.
 const TRAVEL: f64 = 0.5;
 
-/// A flight that starts from the camera as it is.
+/// A flight that starts from the current camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
-    /// Once around the target, always looking at it: an exact circle.
+    /// Once around the target on an exact circle, always looking at it.
     Turntable,
     /// Straight towards the target.
     Dolly,
@@ -25,12 +25,12 @@ pub enum Preset {
     Crane,
     /// Around the target on an ellipse.
     Ellipse,
-    /// An eight in front of the target, looking at it.
+    /// A figure eight in front of the target, looking at it.
     FigureEight,
 }
 
 impl Preset {
-    /// All of them.
+    /// All presets.
     pub const ALL: [Self; 5] = [
         Self::Turntable,
         Self::Dolly,
@@ -39,7 +39,7 @@ impl Preset {
         Self::FigureEight,
     ];
 
-    /// Name, and what it does.
+    /// Name and description.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Turntable => (
@@ -53,8 +53,9 @@ impl Preset {
         }
     }
 
-    /// Keys for a flight of so many seconds from `camera` around or towards `target`. They are all in one place where there
-    /// is no way to go: for an ellipse from straight above or below, and from the target itself.
+    /// Returns the keys of a flight that starts from `camera`, goes around or towards `target` and takes `seconds`.
+    /// If the path has no extent, all keys have the same position: for an ellipse seen from straight above or
+    /// below, and for any preset that starts at the target itself.
     pub fn keys(self, camera: &Camera, target: DVec3, seconds: f64) -> Vec<Key<Camera>> {
         let arm = camera.position - target;
         let is_upright = arm.x.hypot(arm.z) < arm.length() * 1e-9;
@@ -63,7 +64,7 @@ impl Preset {
             Self::Turntable => {
                 let place = |share: f64| target + turned(arm, share * TAU);
                 let mut keys = looking(camera, target, 4, seconds, place);
-                // From above or below, the picture turns.
+                // From straight above or below, the picture rotates.
                 for key in &mut keys {
                     key.interpolation = Interpolation::Orbit { around: target };
                     if let Some(heading) = heading {
@@ -79,7 +80,7 @@ impl Preset {
                 let place = |share| target + arm * left(share);
                 let mut keys = looking(camera, target, 1, seconds, place);
                 for key in &mut keys {
-                    // Where rays run side by side, things grow with the window alone.
+                    // In orthographic projection, only the height of the window changes the size of things.
                     key.value.orthographic_height *= left(key.time / seconds);
                 }
                 keys
@@ -99,11 +100,11 @@ impl Preset {
                 let level = heading.map_or(DVec3::new(arm.x, 0.0, arm.z), |way| way * arm.length());
                 let aside = turned(level, TAU / 4.0);
                 let mut keys = looking(camera, target, ROUND_KEYS, seconds, |share| {
-                    // Gerono's lemniscate, in front of the target.
+                    // Lemniscate of Gerono, in front of the target.
                     let (sine, cosine) = (share * TAU).sin_cos();
                     camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
                 });
-                // From above or below, the upper edge stays where it is.
+                // From straight above or below, the direction of the upper edge stays constant.
                 if let Some(heading) = heading {
                     for key in &mut keys {
                         key.value.look_at = target - key.value.position;
@@ -116,7 +117,7 @@ impl Preset {
     }
 }
 
-/// Where on a map a camera looks; straight down, where its picture has its upper edge.
+/// Returns the horizontal direction of the camera: its viewing direction or, if that is steep, its up vector.
 fn heading(camera: &Camera) -> Option<DVec3> {
     let basis = camera.basis()?;
     let [up, ahead] = [basis.y_axis, -basis.z_axis].map(|way| DVec3::new(way.x, 0.0, way.z));
@@ -128,14 +129,14 @@ fn heading(camera: &Camera) -> Option<DVec3> {
     way.try_normalize()
 }
 
-/// Turned about the vertical axis by an angle in radians.
+/// Rotates a vector about the vertical axis by an angle in radians.
 fn turned(v: DVec3, angle: f64) -> DVec3 {
     let (sine, cosine) = angle.sin_cos();
     DVec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine)
 }
 
-/// Keys at even times on a way, looking at the target. A way that returns ends where it began, bit
-/// by bit.
+/// Returns keys at equal time steps along a path, looking at the target. If the path returns to its start, the last
+/// position is exactly the first.
 fn looking(
     camera: &Camera,
     target: DVec3,
@@ -160,7 +161,7 @@ fn looking(
             roll: 0.0,
             ..Orientation::of(&facing)
         };
-        // On top of the target there is no direction to it: the camera's own stays.
+        // At the target there is no direction to it: the camera keeps its own.
         let value = match facing.basis() {
             Some(_) => level.apply(&facing),
             None => Camera {

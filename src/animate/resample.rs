@@ -1,5 +1,5 @@
-//! What a recorded flight did between the movements that arrived: mice and touchpads tell less often than
-//! pictures are shown, and what stood still in between did not.
+//! Interpolates a recorded flight between input events: mice and touchpads report less often than pictures are
+//! shown, so that the recorded camera stands still in between, although the hand did not.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,11 +7,11 @@ use glam::DVec3;
 
 use crate::scene::{Sample, Take};
 
-/// Seconds from which on standing still is a pause.
+/// Longest time between two movements, in seconds, that is not a pause.
 const PAUSE: f64 = 0.15;
 
-/// The same flight without the steps that come of telling too rarely: samples between two movements that follow
-/// each other closely are on the straight way between them. How many samples that were.
+/// Returns the flight without the steps due to rare input events: samples between two movements in quick succession
+/// are interpolated linearly. Also returns how many samples were changed.
 pub fn resampled(take: &Take) -> (Take, usize) {
     let samples = &take.samples;
     let mut moved = samples.clone();
@@ -43,12 +43,12 @@ fn angles(sample: &Sample) -> DVec3 {
     DVec3::new(sample.2, sample.3, sample.4)
 }
 
-/// How much of the time from one sample to another has passed at the one between.
+/// Returns the share of the time between two samples that has passed at one between them.
 fn share(samples: &[Sample], (from, at, to): (usize, usize, usize)) -> f64 {
     (samples[at].0 - samples[from].0) / (samples[to].0 - samples[from].0)
 }
 
-/// From a movement to the next one that follows closely, with samples in between that stand still.
+/// Returns pairs of successive movements in quick succession that have unchanged samples between them.
 fn steps(samples: &[Sample], is_same: impl Fn(&Sample, &Sample) -> bool) -> Vec<(usize, usize)> {
     let is_movement = |n: &usize| !is_same(&samples[n - 1], &samples[*n]);
     let movements: Vec<usize> = (1..samples.len()).filter(is_movement).collect();
@@ -67,7 +67,7 @@ mod tests {
         let mut take = Take::default();
         for n in 0..40_u32 {
             let time = f64::from(n) * 0.02;
-            // A step of 0.03 in every third sample; from 0.4 s on, nothing for 0.2 s.
+            // A step of 0.03 in every third sample; none for 0.2 s from 0.4 s on.
             let turned = if n < 20 {
                 n / 3
             } else {

@@ -1,4 +1,4 @@
-//! Other timing for the same way.
+//! Changing the timing of a flight.
 
 use super::path::nearest;
 use super::{CameraChange, CameraPath, motion_between};
@@ -6,31 +6,32 @@ use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Track,
 };
 
-/// Steps within a segment in which its length is measured.
+/// Number of steps in which the length of a segment is measured.
 const STEPS: usize = 16;
-/// Closest that two keys may be after a pause was taken out, and the shortest flight, in seconds.
+/// Smallest time between keys at constant speed (before scaling), and shortest flight, in seconds.
 const CLOSEST: f64 = 1.0 / 240.0;
-/// A segment with less than this share of the flight's mean speed is a pause.
+/// Share of the flight's mean speed below which a segment is a pause.
 const PAUSE_SHARE: f64 = 0.05;
-/// World lengths that a turn of one radian counts as, in shares of the way's length; so does a zoom to e times the size.
+/// Length that a rotation by one radian counts as, as a share of the length of the path; so does a zoom by a factor
+/// of e.
 const TURN_SHARE: f64 = 0.2;
 
-/// Another timing.
+/// A way of changing the timing of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Retime {
-    /// As far in each second as in any other; as long as before.
+    /// Constant speed; the duration is unchanged.
     ConstantSpeed,
-    /// Without the stretches in which nothing moves.
+    /// Pauses, in which nothing moves, are removed.
     TrimPauses,
-    /// Each key between its ends nearer to the middle of its neighbours.
+    /// Each inner key moves towards the straight line between its neighbours.
     Smooth,
 }
 
 impl Retime {
-    /// All of them.
+    /// All variants.
     pub const ALL: [Self; 3] = [Self::ConstantSpeed, Self::TrimPauses, Self::Smooth];
 
-    /// Name, and what it does.
+    /// Name and description.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::ConstantSpeed => (
@@ -45,7 +46,7 @@ impl Retime {
         }
     }
 
-    /// The keys with the new timing. Cuts stay cuts.
+    /// Returns the keys with the new timing. Cuts are kept.
     pub fn apply(self, keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         if keys.len() < 2 {
             return keys.to_vec();
@@ -58,7 +59,7 @@ impl Retime {
     }
 }
 
-/// The same animation with a flight of the camera of so many seconds: from its start on, keys of values go with it.
+/// Returns the animation with a camera flight of `seconds`. Keys of tracks after its start are scaled with it.
 #[must_use]
 pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
     let [first, .., last] = &animation.keys[..] else {
@@ -78,7 +79,7 @@ pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
     }
 }
 
-/// The most seconds of a flight with which no key comes behind [`MAX_SECONDS`].
+/// Returns the longest duration of the flight in seconds for which no key is after [`MAX_SECONDS`].
 pub fn longest_flight(animation: &Animation) -> f64 {
     let [first, .., last] = &animation.keys[..] else {
         return MAX_SECONDS;
@@ -89,7 +90,7 @@ pub fn longest_flight(animation: &Animation) -> f64 {
     (MAX_SECONDS - first.time) * (last.time - first.time) / (latest - first.time)
 }
 
-/// Keys behind the start so many times as far behind it.
+/// Scales the times of all keys after `start`, relative to it.
 fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
     let later = |key: &Key<T>| Key {
         time: if key.time > start {
@@ -102,7 +103,8 @@ fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
     keys.iter().map(later).collect()
 }
 
-/// Length of each segment: of its curve, where it is one, and of its turns and zooms. What is cut has none.
+/// Returns the length of each segment: that of its curve, or of its rotation and zoom if larger. Cuts have no
+/// length.
 fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
     let path = CameraPath::new(keys);
     let segment = |pair: &[Key<Camera>]| {
@@ -127,7 +129,7 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
     };
     let motions: Vec<CameraChange> = keys.windows(2).map(segment).collect();
     let way: f64 = motions.iter().map(|motion| motion.distance).sum();
-    // A camera that only turns has its turns alone.
+    // If the camera never moves, only rotations and zooms count.
     let radian = if way > 0.0 { way * TURN_SHARE } else { 1.0 };
     let length = |motion: &CameraChange| {
         let turned = motion.turn.to_radians().max(motion.zoom);
@@ -157,15 +159,15 @@ fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     };
     let mut retimed = with_steps(keys, step);
     for key in &mut retimed {
-        // A pace is a change of speed.
+        // Easing would vary the speed.
         key.easing = Easing::Even;
     }
-    // What the shortest steps were given is taken from all.
+    // Compensates for steps that were lengthened to the minimum.
     let last = retimed.last().map_or(end, |key| key.time);
     scaled(&retimed, start, (end - start) / (last - start))
 }
 
-/// Stretches, as places of segments, in which next to nothing moves.
+/// Returns, for each segment, whether next to nothing moves in it.
 fn pauses(keys: &[Key<Camera>]) -> Vec<bool> {
     let lengths = lengths(keys);
     let seconds = |i: usize| keys[i + 1].time - keys[i].time;
@@ -178,7 +180,7 @@ fn pauses(keys: &[Key<Camera>]) -> Vec<bool> {
     (0..lengths.len()).map(is_pause).collect()
 }
 
-/// Seconds in which next to nothing moves.
+/// Returns the total duration of all pauses in seconds.
 pub fn paused_seconds(keys: &[Key<Camera>]) -> f64 {
     if keys.len() < 2 {
         return 0.0;
@@ -193,7 +195,7 @@ pub fn paused_seconds(keys: &[Key<Camera>]) -> f64 {
 fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     let pauses = pauses(keys);
     if pauses.iter().all(|is_pause| *is_pause) {
-        // A flight that is all pause would vanish.
+        // A flight that is a single pause would vanish.
         return keys.to_vec();
     }
     let step = |i: usize| {
@@ -205,7 +207,7 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     };
     let mut kept: Vec<Key<Camera>> = Vec::new();
     for (index, key) in with_steps(keys, step).into_iter().enumerate() {
-        // Where keys fall together, the one after the pause goes on.
+        // Of two keys that coincide now, the one after the pause is kept.
         if index > 0 && pauses[index - 1] {
             kept.pop();
         }
@@ -214,7 +216,7 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     kept
 }
 
-/// The keys with other times between them.
+/// Returns the keys with new time steps between them.
 fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Camera>> {
     let mut time = keys[0].time;
     let mut later = Vec::new();
@@ -233,7 +235,7 @@ fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Came
 fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     let mut smooth = keys.to_vec();
     for i in 1..keys.len() - 1 {
-        // A cut is one on purpose, and an arc has no corners.
+        // Cuts are intended, and arcs have no corners.
         let has_no_corner = |key: &Key<Camera>| {
             matches!(
                 key.interpolation,
@@ -244,7 +246,7 @@ fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
             continue;
         }
         let (before, here, after) = (&keys[i - 1].value, &keys[i].value, &keys[i + 1].value);
-        // Halfway between the key and the place that a straight flight would have at its time.
+        // The mean of the key and of the position on a straight flight at its time.
         let share = (keys[i].time - keys[i - 1].time) / (keys[i + 1].time - keys[i - 1].time);
         let straight = |a: f64, b: f64, c: f64| (b + a + (c - a) * share) / 2.0;
         let angles = [before, here, after].map(Orientation::of);

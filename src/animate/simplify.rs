@@ -1,4 +1,4 @@
-//! From a take of hundreds of samples to few keys that show nearly the same.
+//! Simplifying a take of hundreds of samples to a few keys that show nearly the same.
 
 use std::collections::BTreeSet;
 
@@ -8,53 +8,53 @@ use super::CameraPath;
 use super::smoothing::smoothed;
 use crate::scene::{Camera, Interpolation, Key, SAME_TIME, Sample, Take};
 
-/// Keys to both sides whose removal a key feels: a smooth segment is shaped by its neighbours.
+/// Number of keys on each side that the removal of a key affects: a smooth segment is shaped by its neighbours.
 const REACH: usize = 3;
 
-/// Least way of a jump, in image heights.
+/// Smallest shift of the picture that counts as a jump, in image heights.
 const JUMP: f64 = 0.02;
-/// How many times farther than usual it is.
+/// Smallest ratio of a jump to the usual shift.
 const JUMP_FACTOR: f64 = 6.0;
-/// Steps to both sides that tell what is usual.
+/// Number of steps on each side from which the usual shift is determined.
 const BESIDE: usize = 6;
 
-/// Widths in seconds over which a take may be smoothed, widest first.
+/// Widths in seconds with which a take may be smoothed, widest first.
 const SMOOTHING: [f64; 6] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04];
 
-/// A place in a picture and what is seen there: by how much it moves tells how far off another
-/// camera is.
+/// A position in a picture, and what is seen there: its shift in the picture of another camera measures that
+/// camera's deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landmark {
-    /// In the picture, in image heights from its middle, y up.
+    /// Position in the picture, in image heights from its centre, y up.
     pub at: [f64; 2],
-    /// The point of the scene, in world units; for the sky, the direction.
+    /// The visible point of the scene in world units; for the sky, the direction.
     pub what: DVec3,
-    /// Whether nothing is there but sky.
+    /// Whether only sky is seen there.
     pub is_sky: bool,
 }
 
-/// Few keys in place of a take.
+/// A take simplified to a few keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simplified {
     /// The keys, at times of samples.
     pub keys: Vec<Key<Camera>>,
-    /// How far off the picture is at most at a sample, in image heights.
+    /// Largest deviation of the picture at any sample.
     pub worst: Worst,
-    /// How often the view jumped: the picture moved farther from one sample to the next than a hand moves.
+    /// Number of jumps: shifts of the picture from one sample to the next that are larger than by hand.
     pub jumps: usize,
 }
 
-/// Where keys are off a take the most.
+/// The largest deviation of keys from a take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Worst {
-    /// How far the picture is off, in image heights.
+    /// Deviation of the picture, in image heights.
     pub off: f64,
-    /// When, in seconds of the keys.
+    /// When it occurs, in seconds of the keys.
     pub time: f64,
 }
 
-/// How far, in image heights, what was seen at known places is off through another camera.
-/// Infinite where it is behind that.
+/// Returns the largest shift of the landmarks in the picture of another camera, in image heights. Infinite if one
+/// is behind that camera.
 pub fn deviation(camera: &Camera, seen: &[Landmark]) -> f64 {
     let Some(framing) = camera.framing() else {
         return f64::INFINITY;
@@ -71,17 +71,17 @@ pub fn deviation(camera: &Camera, seen: &[Landmark]) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-/// Keys at as few samples as it takes to be nowhere off by more than `tolerance` image heights.
-/// `seen` holds what each sample saw.
+/// Chooses keys at as few samples as needed for a deviation of at most `tolerance` image heights everywhere. `seen`
+/// holds the landmarks of each sample.
 ///
-/// A hand trembles: where the tolerance allows it, the keys are taken from a smoother flight that is
-/// itself off by no more than half of it.
+/// Hands tremble: if the tolerance allows, the keys are taken from a smoothed flight, which itself deviates by at
+/// most half the tolerance.
 pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplified {
     let (cuts, jumps) = (cuts(take), jumps(take, seen));
     let edges: BTreeSet<usize> = cuts.union(&jumps).copied().collect();
     let search = Search {
         take,
-        // What jumps was not meant to be smooth there.
+        // Jumps must not be smoothed.
         cameras: smoothed_cameras(take, &edges, seen, tolerance / 2.0),
         seen,
         tolerance,
@@ -90,7 +90,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplifi
     };
     let mut chosen = search.refined(search.ends());
     search.prune(&mut chosen);
-    // Where places coincide, a curve is shaped from farther away than pruning looks.
+    // Where keys coincide, a curve is shaped by keys farther away than pruning considers.
     let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
     let worst = worst_off(&CameraPath::new(&keys), take, seen, ends_of(&keys));
@@ -98,7 +98,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplifi
     Simplified { keys, worst, jumps }
 }
 
-/// The cameras of a take, as smooth as the tolerance allows.
+/// Returns the cameras of a take, smoothed as far as the tolerance allows.
 fn smoothed_cameras(
     take: &Take,
     cuts: &BTreeSet<usize>,
@@ -121,13 +121,13 @@ fn smoothed_cameras(
     smooth.next().unwrap_or_else(plain)
 }
 
-/// The times of the first and the last key; none of none.
+/// Returns the times of the first and the last key; `None` without keys.
 pub fn ends_of(keys: &[Key<Camera>]) -> Option<(f64, f64)> {
     Some((keys.first()?.time, keys.last()?.time))
 }
 
-/// Where keys are off a take the most, which is flown from `start` to `end`; of what is before and behind the keys
-/// nothing is said.
+/// Returns the largest deviation of a path from a take. `flown` is the time span of the path in which the take is
+/// flown. Samples before the first and after the last key are ignored.
 pub fn worst_off(
     path: &CameraPath,
     take: &Take,
@@ -158,17 +158,17 @@ pub fn worst_off(
 
 struct Search<'t> {
     take: &'t Take,
-    /// What the samples' keys are.
+    /// The camera of each sample, from which keys are made.
     cameras: Vec<Camera>,
     seen: &'t [Vec<Landmark>],
     tolerance: f64,
-    /// Last samples before the projection changes.
+    /// The last samples before changes of projection.
     cuts: BTreeSet<usize>,
-    /// The same, and before the view jumped.
+    /// The cuts, and the last samples before jumps.
     edges: BTreeSet<usize>,
 }
 
-/// The samples after which rays suddenly spread, or run side by side.
+/// Returns the samples after which the projection changes.
 fn cuts(take: &Take) -> BTreeSet<usize> {
     let changes = take.lenses.windows(2).filter_map(|pair| {
         let is_cut = pair[0].projection != pair[1].projection;
@@ -177,8 +177,8 @@ fn cuts(take: &Take) -> BTreeSet<usize> {
     changes.collect()
 }
 
-/// The samples after which the picture moves much farther than it did around them: a script or a touchpad
-/// moved the mouse, or the machine was busy with something else.
+/// Returns the samples after which the picture shifts much farther than around them: a script or a touchpad moved
+/// the mouse, or the machine was busy.
 fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
     let cameras = (1..take.samples.len()).map(|n| take.camera(n));
     let steps: Vec<f64> = cameras
@@ -191,7 +191,8 @@ fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
         let mut others: Vec<f64> = others.collect();
         others.sort_by(f64::total_cmp);
         let usual = others.get(others.len() / 2).copied().unwrap_or(0.0);
-        // A short turn between two rests is none, though most around it stand still: it takes three samples or more.
+        // A short turn between two rests takes three samples or more. It is not a jump, though most steps around it
+        // are still.
         let near = n.saturating_sub(2)..(n + 3).min(steps.len());
         let mut near: Vec<f64> = near.map(|near| steps[near]).collect();
         near.sort_by(f64::total_cmp);
@@ -220,21 +221,21 @@ impl Search<'_> {
         camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen))
     }
 
-    /// The sample in a range that is off the most, if one is off too far.
+    /// Returns the sample with the largest deviation, if that exceeds the tolerance.
     fn worst(&self, path: &CameraPath, samples: impl Iterator<Item = usize>) -> Option<usize> {
         let off = samples.map(|sample| (sample, self.off(path, sample)));
         let worst = off.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (worst.1 > self.tolerance).then_some(worst.0)
     }
 
-    /// The samples that are keys in any case: the ends, and both sides of cuts and jumps.
+    /// Returns the samples that are always keys: the ends, and both sides of cuts and jumps.
     fn ends(&self) -> BTreeSet<usize> {
         let last = self.take.samples.len().saturating_sub(1);
         let edges = self.edges.iter().flat_map(|&edge| [edge, edge + 1]);
         [0, last].into_iter().chain(edges).collect()
     }
 
-    /// With the worst sample of each stretch added until none is off too far.
+    /// Adds the worst sample of each stretch until no deviation exceeds the tolerance.
     fn refined(&self, mut chosen: BTreeSet<usize>) -> BTreeSet<usize> {
         loop {
             let places: Vec<usize> = chosen.iter().copied().collect();
@@ -250,7 +251,7 @@ impl Search<'_> {
         }
     }
 
-    /// Takes keys away again that later ones made needless.
+    /// Removes keys that later ones made unnecessary.
     fn prune(&self, chosen: &mut BTreeSet<usize>) {
         let inner: Vec<usize> = chosen.iter().copied().collect();
         let inner = inner.get(1..inner.len().saturating_sub(1)).unwrap_or(&[]);
@@ -268,7 +269,7 @@ impl Search<'_> {
             let before = around.len();
             around.extend(chosen.range(sample + 1..).take(REACH + 1));
             let path = CameraPath::new(&self.keys(around.iter().copied()));
-            // The outermost stretches are shaped by keys that are not in the window.
+            // The outermost stretches also depend on keys outside the window.
             let first = around[usize::from(before > REACH)];
             let is_cut_off = around.len() - before > REACH;
             let last = around[around.len() - 1 - usize::from(is_cut_off)];

@@ -1,4 +1,4 @@
-//! A take without the trembling of the hand.
+//! Smoothing of takes, to remove the tremor of the hand.
 
 use std::collections::BTreeSet;
 
@@ -7,12 +7,12 @@ use glam::DVec3;
 use super::path::unwound;
 use crate::scene::{Camera, Orientation, Sample, Take};
 
-/// Place and angles of a sample.
+/// Position and angles of a sample.
 type NumberRow = [f64; 6];
 
-/// The cameras of a take after a Gaussian of this width in seconds has gone over places and angles.
-/// What is before a cut is not mixed with what is after it; at the ends of each part the flight is
-/// continued as its mirror image through the end, so that the ends stay where they are.
+/// Returns the cameras of a take, with positions and angles filtered by a Gaussian of width `seconds` (standard
+/// deviation). Samples before and after a cut are not mixed. At the ends of each part, the flight is continued by
+/// its point reflection about the end, so that the ends stay in place.
 pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec<Camera> {
     let angles = take
         .samples
@@ -45,7 +45,8 @@ pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec
     cameras
 }
 
-/// The mean around sample `n`, near samples weighing more, each for the time that it stands for.
+/// Returns the weighted mean around sample `n`. The weight is the Gaussian times the time span that a sample
+/// represents.
 fn mean(part: &[(f64, NumberRow)], n: usize, seconds: f64) -> NumberRow {
     let (last, here) = (part.len() - 1, part[n].0);
     let (first_time, last_time) = (part[0].0, part[last].0);
@@ -65,7 +66,7 @@ fn mean(part: &[(f64, NumberRow)], n: usize, seconds: f64) -> NumberRow {
     for (m, (time, numbers)) in direct.skip(from(here - reach)) {
         add(time - here, stands_for(m), numbers, None);
     }
-    // What is beyond an end is as far from it as what is mirrored there.
+    // A reflected sample is as far beyond the end as the original is before it.
     for m in 1..from(2.0 * first_time - here + reach) {
         let apart = here - 2.0 * first_time + part[m].0;
         add(apart, stands_for(m), &part[m].1, Some(&part[0].1));

@@ -1,4 +1,4 @@
-//! Paths as text of their own: RON for Glint, a table of numbers for everything else.
+//! Camera paths as text: RON for Glint, and comma-separated values for other programs.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::scene::{
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
 
-/// Why a text is no path.
+/// Why a text is not a valid path.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}")]
 pub struct TableError {
@@ -22,12 +22,12 @@ pub struct TableError {
     pub what: String,
 }
 
-/// A path as comma-separated values, one line for each camera: seconds, world units, degrees.
+/// Writes a path as comma-separated values, one line per camera, in seconds, world units and degrees.
 pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> String {
     let mut text = format!("{HEAD}\n");
     let cameras: Vec<_> = cameras.into_iter().collect();
     let angles = cameras.iter().map(|(_, camera)| Orientation::of(camera));
-    // What is between two lines is between their numbers: a round is no step.
+    // Angles are unwound, so that readers can interpolate between lines across full turns.
     let angles = unwound(angles).into_iter();
     for ((time, camera), Orientation { yaw, pitch, roll }) in cameras.into_iter().zip(angles) {
         let [x, y, z] = camera.position.to_array();
@@ -43,7 +43,8 @@ pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> Str
     text
 }
 
-/// What stands between cells: spreadsheets write semicolons where numbers have a decimal comma, and tabs on clipboards.
+/// Returns the delimiter between cells: spreadsheets use semicolons where numbers have a decimal comma, and tabs on
+/// clipboards.
 fn delimiter_of(text: &str) -> u8 {
     let head = text.lines().next().unwrap_or_default();
     let mut delimiters = [',', ';', '\t'].into_iter();
@@ -59,14 +60,14 @@ fn number_of(cell: &str, delimiter: u8) -> Option<f64> {
     }
 }
 
-/// Keys from such a table, or from one with semicolons and decimal commas. Its first line names the columns, in any
-/// order; `time`, `x`, `y` and `z` must be there, what is missing is taken from `like`.
+/// Reads keys from such a table, or from one with semicolons and decimal commas. The first line names the columns,
+/// in any order; `time`, `x`, `y` and `z` are required, other missing values are taken from `like`.
 ///
 /// # Errors
 /// [`TableError`], with the line.
 pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableError> {
     let text = text.trim_start_matches('\u{feff}');
-    // Before the names there may be blank lines.
+    // There may be blank lines before the column names.
     let is_blank = |line: &str| line.trim().is_empty();
     let blank: Vec<&str> = text
         .split_inclusive('\n')
@@ -150,7 +151,7 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         let key = Key::new(time, angles.apply(&camera));
         keys.push((line, key));
     }
-    // The lines of a table may be in any order.
+    // The lines may be in any order.
     keys.sort_by(|(_, a), (_, b)| a.time.total_cmp(&b.time));
     let mut pairs = keys.array_windows();
     if let Some([_, (line, key)]) = pairs.find(|[a, b]| b.1.time - a.1.time < SAME_TIME) {
@@ -163,10 +164,10 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
     Ok(keys.into_iter().map(|(_, key)| key).collect())
 }
 
-/// A path as RON: the list of keys as the scene file has it, one key in a line.
+/// Writes a path in RON: the list of keys as in the scene file, one key per line.
 ///
 /// # Errors
-/// What the writer says; no path is known that has no text.
+/// Any serialization error; no path is known for which this happens.
 pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
     let config = ron::ser::PrettyConfig::new()
         .struct_names(true)
@@ -176,7 +177,7 @@ pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
     Ok(text + "\n")
 }
 
-/// Keys from such a text, or those of the camera in a scene.
+/// Reads keys from such a text, or the camera keys of a whole scene file.
 ///
 /// # Errors
 /// [`TableError`], with the line.
@@ -201,7 +202,7 @@ pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
         line: error.span.start.line,
         what: error.code.to_string(),
     })?;
-    // They may be in any order, as in a table.
+    // The keys may be in any order, as in a table.
     keys.sort_by(|a, b| a.time.total_cmp(&b.time));
     Ok(keys)
 }

@@ -1,4 +1,4 @@
-//! The flight of the camera and what else moves, as the file stores it: keys on a line of time.
+//! The animation as stored in the file: keyframes of the camera and of other properties.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -12,62 +12,62 @@ pub use super::notation::vector::Value;
 use super::notation::{self, vector::NumberOrPoint};
 use super::orientation::Orientation;
 
-/// Frames per second that there may be.
+/// Valid frame rates, in frames per second.
 pub const FRAME_RATES: RangeInclusive<f64> = 1.0..=240.0;
-/// Longest animation, in seconds: a day.
+/// Largest duration of an animation, in seconds: a day.
 pub const MAX_SECONDS: f64 = 86_400.0;
-/// Keys nearer to each other than this are at the same time, in seconds, as is a key to a frame: files may be written
-/// by hand.
+/// Difference in seconds below which two keys, or a key and a frame, count as simultaneous: files may be written by
+/// hand.
 pub const SAME_TIME: f64 = 1e-6;
-/// Most keys of one kind.
+/// Largest number of keys of the camera or of a track.
 pub const MAX_KEYS: usize = 100_000;
 
-/// Everything that moves.
+/// Everything that is animated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Animation {
-    /// Frames per second of playing time, within [`FRAME_RATES`]. The curves do not depend on it.
+    /// Frames per second of playback, within [`FRAME_RATES`]. The curves do not depend on it.
     #[serde(with = "notation::number")]
     pub frames_per_second: f64,
-    /// Where the camera is at which time, in order of time.
+    /// Keys of the camera, in order of time.
     pub keys: Vec<Key<Camera>>,
-    /// What else moves.
+    /// Keys of other properties.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tracks: Vec<Track>,
-    /// The flight as it was recorded; the keys were made from it.
+    /// The recorded flight from which the camera keys were made, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub take: Option<Arc<Take>>,
 }
 
-/// A value at a time, and how to go on from there.
+/// A value at a time, and the transition to the next key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct Key<T> {
     /// Seconds from the start of the animation, 0–[`MAX_SECONDS`].
     #[serde(with = "notation::number")]
     pub time: f64,
-    /// What holds at that time.
+    /// The value at that time.
     pub value: T,
-    /// The way to the next key.
+    /// Interpolation up to the next key.
     #[serde(default, skip_serializing_if = "notation::is_default")]
     pub interpolation: Interpolation,
-    /// The pace on that way.
+    /// Easing up to the next key.
     #[serde(default, skip_serializing_if = "notation::is_default")]
     pub easing: Easing,
 }
 
-/// The way from one key to the next.
+/// Interpolation between a key and the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Interpolation {
-    /// Through the keys in a curve, without overshooting them.
+    /// A smooth curve through the keys, without overshoot.
     #[default]
     Smooth,
-    /// Straight, at constant speed.
+    /// A straight line, at constant speed.
     Linear,
-    /// Stays, then jumps: a cut.
+    /// The value stays constant, then jumps: a cut.
     Hold,
-    /// On an arc around the vertical axis through a point (cameras and positions).
+    /// An arc around the vertical axis through a point (cameras and positions only).
     Orbit {
         /// A point on the axis.
         #[serde(with = "notation::vector")]
@@ -75,46 +75,46 @@ pub enum Interpolation {
     },
 }
 
-/// The pace between two keys.
+/// Variation of speed between two keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Easing {
-    /// As the interpolation has it.
+    /// As the interpolation defines it.
     #[default]
     Even,
-    /// Starts slowly.
+    /// Slow start.
     In,
-    /// Ends slowly.
+    /// Slow end.
     Out,
-    /// Starts and ends slowly.
+    /// Slow start and end.
     InOut,
 }
 
-/// Keys for one number or point of the scene.
+/// The keys of one animated number or vector of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Track {
-    /// What moves.
+    /// The animated property.
     pub target: Target,
-    /// In order of time.
+    /// Keys in order of time.
     pub keys: Vec<Key<Value>>,
 }
 
-/// What a track can move.
+/// A property that a track can animate.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Target {
     /// [`super::Scene::ambient_intensity`].
     AmbientIntensity,
     /// Brightness of the named light.
     LightIntensity(String),
-    /// Place of the named light.
+    /// Position of the named light.
     LightPosition(String),
-    /// Place of the named object, see [`super::Shape::position`].
+    /// Position of the named object, see [`super::Shape::position`].
     ObjectPosition(String),
-    /// How the named object is turned, which must be a mesh: degrees about x, then y, then z.
+    /// Rotation of the named object, which must be a mesh: degrees about x, then y, then z.
     ObjectRotation(String),
 }
 
-/// What a track belongs to, by its name.
+/// The light or object that a track belongs to, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Owner<'a> {
     /// A light.
@@ -123,17 +123,17 @@ pub enum Owner<'a> {
     Object(&'a str),
 }
 
-/// A recorded flight: what the camera did, at the times when it was seen doing it.
+/// A recorded flight: camera states at the times when they were shown.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Take {
-    /// In order of time.
+    /// Samples in order of time.
     pub samples: Vec<Sample>,
-    /// The camera's other properties, from the sample where they begin to hold.
+    /// The camera's other properties, each from the sample where they start to apply.
     pub lenses: Vec<Lens>,
 }
 
-/// Every step of every edit asks whether something has changed, and there may be very many samples.
+/// Compares addresses first: every step of every edit compares scenes, and there may be very many samples.
 impl PartialEq for Take {
     fn eq(&self, other: &Self) -> bool {
         std::ptr::eq(self, other)
@@ -141,7 +141,7 @@ impl PartialEq for Take {
     }
 }
 
-/// One moment of a take: time in seconds, position, and yaw, pitch and roll in radians.
+/// A sample of a take: time in seconds, position, and yaw, pitch and roll in radians.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sample(
     #[serde(with = "notation::number")] pub f64,
@@ -151,11 +151,11 @@ pub struct Sample(
     #[serde(with = "notation::number")] pub f64,
 );
 
-/// What of the camera is not its place and its direction.
+/// The properties of the camera other than position and orientation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lens {
-    /// Place of the first sample that it belongs to, from 0.
+    /// Index of the first sample that these apply to.
     pub from: usize,
     /// As in [`Camera`].
     pub projection: Projection,
@@ -179,7 +179,7 @@ impl Default for Animation {
 }
 
 impl Animation {
-    /// About how many bytes it takes, without the recording, which copies share.
+    /// Estimates the memory in bytes, without the take, which clones share.
     pub fn bytes(&self) -> usize {
         let tracks = self.tracks.iter().map(|track| track.keys.len());
         size_of::<Self>()
@@ -187,20 +187,20 @@ impl Animation {
             + tracks.sum::<usize>() * size_of::<Key<Value>>()
     }
 
-    /// Whether nothing moves.
+    /// Returns whether nothing is animated.
     pub fn is_still(&self) -> bool {
         self.keys.is_empty() && self.tracks.is_empty()
     }
 
-    /// Time of the last key, in seconds; 0 without keys.
+    /// The time of the last key in seconds; 0 without keys.
     pub fn duration(&self) -> f64 {
         let last = self.keys.last().map_or(0.0, |key| key.time);
         let tracks = self.tracks.iter().filter_map(|track| track.keys.last());
         tracks.map(|key| key.time).fold(last, f64::max)
     }
 
-    /// Seconds of a round of what is played again and again: its last frame is on show as long as others, unless it is
-    /// the first one again.
+    /// Returns the duration in seconds of one loop of repeated playback. If the animation ends as it starts, this
+    /// is [`Self::duration`]; otherwise the last frame is shown as long as every other.
     pub fn seconds_of_round(&self) -> f64 {
         fn is_closed<T: PartialEq>(keys: &[Key<T>]) -> bool {
             let ends = keys.first().zip(keys.last());
@@ -213,34 +213,35 @@ impl Animation {
         self.time_of(self.frame_count() + 1)
     }
 
-    /// Number of frames: one at the start and one every 1/fps seconds, up to the last key.
+    /// The number of frames: one at the start and one every 1/fps seconds, up to the last key.
     pub fn frame_count(&self) -> u64 {
         Self::frames_in(self.duration(), self.frames_per_second)
     }
 
-    /// Frames of so many seconds, with that at zero.
+    /// Returns the number of frames in a duration in seconds, including the one at zero.
     pub fn frames_in(seconds: f64, frames_per_second: f64) -> u64 {
         ((seconds + SAME_TIME) * frames_per_second).floor() as u64 + 1
     }
 
-    /// Time of a frame in seconds; frames are counted from 1.
+    /// Returns the time of a frame in seconds; frames are counted from 1.
     pub fn time_of(&self, frame: u64) -> f64 {
         frame.saturating_sub(1) as f64 / self.frames_per_second
     }
 
-    /// The frame nearest to a time, counted from 1; near the last key it may be one behind the last that is made.
+    /// Returns the frame nearest to a time, counted from 1; close to the last key, it may be one past the last
+    /// frame.
     pub fn nearest_frame(&self, time: f64) -> u64 {
         self.frame_at(time + 0.5 / self.frames_per_second)
     }
 
-    /// The frame that is on show at a time, counted from 1.
+    /// Returns the frame shown at a time, counted from 1.
     pub fn frame_at(&self, time: f64) -> u64 {
         ((time.max(0.0) + SAME_TIME) * self.frames_per_second).floor() as u64 + 1
     }
 }
 
 impl<T> Key<T> {
-    /// A key with the default way and pace.
+    /// Creates a key with the default interpolation and easing.
     pub fn new(time: f64, value: T) -> Self {
         Self {
             time,
@@ -252,7 +253,7 @@ impl<T> Key<T> {
 }
 
 impl Interpolation {
-    /// What it is called in lists.
+    /// The name shown in lists.
     pub fn name(self) -> &'static str {
         match self {
             Self::Smooth => "smooth",
@@ -264,10 +265,10 @@ impl Interpolation {
 }
 
 impl Easing {
-    /// All of them.
+    /// All variants.
     pub const ALL: [Self; 4] = [Self::Even, Self::In, Self::Out, Self::InOut];
 
-    /// What it is called in lists.
+    /// The name shown in lists.
     pub fn name(self) -> &'static str {
         match self {
             Self::Even => "even",
@@ -279,7 +280,7 @@ impl Easing {
 }
 
 impl Target {
-    /// The light or object that it moves.
+    /// Returns the light or object that the property belongs to; `None` for the ambient intensity.
     pub fn owner(&self) -> Option<Owner<'_>> {
         match self {
             Self::AmbientIntensity => None,
@@ -288,12 +289,12 @@ impl Target {
         }
     }
 
-    /// Whether it is where something is.
+    /// Returns whether the property is a position.
     pub fn is_position(&self) -> bool {
         matches!(self, Self::LightPosition(_) | Self::ObjectPosition(_))
     }
 
-    /// The same, of a light or object with another name.
+    /// Returns the same property of a light or object with another name.
     #[must_use]
     pub fn renamed(&self, to: &str) -> Self {
         let to = to.to_owned();
@@ -306,7 +307,7 @@ impl Target {
         }
     }
 
-    /// What it is called: the thing and its property.
+    /// Returns a label: the name of the light or object, and the property.
     pub fn name(&self) -> String {
         match self {
             Self::AmbientIntensity => "Ambient intensity".to_owned(),
@@ -318,7 +319,7 @@ impl Target {
 }
 
 impl Take {
-    /// The camera of a sample; `None` if there is no such sample.
+    /// Returns the camera at a sample; `None` if there is no such sample.
     pub fn camera(&self, index: usize) -> Option<Camera> {
         let &Sample(_, position, yaw, pitch, roll) = self.samples.get(index)?;
         let after = self.lenses.partition_point(|lens| lens.from <= index);
@@ -334,9 +335,8 @@ impl Take {
         })
     }
 
-    /// Adds a moment. What is kept is rounded: time to a tenth of a millisecond, lengths to nine
-    /// digits, angles to a ten-millionth of a radian. A moment that is no later than the one before
-    /// is not kept.
+    /// Appends a sample, rounded: time to a tenth of a millisecond, lengths to nine digits, angles to a
+    /// ten-millionth of a radian. A sample that is not later than the last one is dropped.
     pub fn push(&mut self, time: f64, camera: &Camera, angles: Orientation) {
         let time = (time * 1e4).round() / 1e4;
         if self.samples.last().is_some_and(|last| last.0 >= time) {

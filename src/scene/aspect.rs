@@ -1,49 +1,49 @@
-//! One part of the light by itself, to see what it adds: the same scene with the rest of its terms at zero.
+//! Views of a single part of the shading: scenes in which all other terms are zero.
 
 use glam::DVec3;
 
 use super::material::ColorPack;
 use super::whole::Scene;
 
-/// What of the light is shown.
+/// The part of the shading that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Aspect {
-    /// All of it: the picture.
+    /// The normal picture.
     #[default]
     All,
-    /// What is seen without any light.
+    /// The ambient term alone.
     Ambient,
-    /// The matte part of what the lights add.
+    /// The diffuse terms of the lights.
     Diffuse,
-    /// The highlights of the lights.
+    /// The specular highlights of the lights.
     Specular,
-    /// All of it, but for mirror images.
+    /// The normal picture without reflections.
     WithoutMirrors,
-    /// The shape of things and their shadows, all of one grey.
+    /// Shapes and shadows in uniform grey.
     Clay,
-    /// Each object in a colour of its own, without light.
+    /// Each object in its own colour, without lighting.
     Objects,
-    /// Which way surfaces are turned.
+    /// Surface normals.
     Normals,
-    /// How far things are.
+    /// Distance from the camera.
     Depth,
-    /// Which points lights reach.
+    /// Which lights reach each point.
     Shadows,
-    /// What mirrors add.
+    /// Reflections alone.
     Mirrors,
-    /// How many rays each pixel takes, as the mean of squares of 8.
+    /// Number of rays per pixel, averaged over blocks of 8 × 8 pixels.
     Cost,
-    /// Which samples are traced again in double precision.
+    /// Samples that are traced again in double precision.
     Again,
 }
 
-/// Golden angle in turns: hues so far apart differ for as many neighbours as can be.
+/// Golden angle in turns: steps of this size give neighbouring objects the most distinct hues.
 const GOLDEN: f64 = 0.381_966_011_250_105;
-/// Brightness of clay, 0–255.
+/// Grey level of [`Aspect::Clay`], 0–255.
 const CLAY: f64 = 200.0;
 
 impl Aspect {
-    /// Every aspect, with its name and what it shows.
+    /// All aspects, each with its name and a description.
     pub const EACH: [(Self, &'static str, &'static str); 13] = [
         (Self::All, "Everything", "The picture as it is"),
         (
@@ -104,12 +104,12 @@ impl Aspect {
         ),
     ];
 
-    /// Its name.
+    /// The name in the user interface.
     pub fn name(self) -> &'static str {
         self.words_of().0
     }
 
-    /// What it shows, in a phrase.
+    /// A phrase that describes what is shown.
     pub fn meaning(self) -> &'static str {
         self.words_of().1
     }
@@ -120,7 +120,7 @@ impl Aspect {
             .map_or(("", ""), |(_, name, meaning)| (name, meaning))
     }
 
-    /// Its name on the command line.
+    /// The name on the command line.
     pub fn word(self) -> String {
         let name = self.name().to_lowercase();
         name.strip_suffix(" only")
@@ -128,12 +128,12 @@ impl Aspect {
             .replace(' ', "-")
     }
 
-    /// All names on the command line.
+    /// All names on the command line, separated by commas.
     pub fn words() -> String {
         Self::EACH.map(|(aspect, ..)| aspect.word()).join(", ")
     }
 
-    /// The scene whose picture shows this of `scene`.
+    /// Returns the scene whose normal picture shows this aspect of `scene`.
     #[must_use]
     pub fn of(self, scene: &Scene) -> Scene {
         let mut shown = scene.clone();
@@ -148,7 +148,7 @@ impl Aspect {
                 shown.background = DVec3::ZERO;
                 shown.ambient_intensity = 0.0;
                 let lights = shown.lights.iter_mut();
-                // What gives no light casts no shadow.
+                // Lights of zero intensity cast no shadows.
                 for light in lights.filter(|light| light.intensity > 0.0) {
                     light.intensity = 1.0;
                 }
@@ -173,7 +173,7 @@ impl Aspect {
     }
 }
 
-/// Gives everything one grey.
+/// Makes every color pack the same matte grey.
 fn clay(shown: &mut Scene) {
     for pack in shown.packs_mut().values_mut() {
         *pack = ColorPack {
@@ -186,14 +186,14 @@ fn clay(shown: &mut Scene) {
     }
 }
 
-/// Takes away what lights give.
+/// Sets the intensity of all lights to zero.
 fn darken(shown: &mut Scene) {
     for light in shown.lights.iter_mut() {
         light.intensity = 0.0;
     }
 }
 
-/// Takes away all light, and what stands behind everything.
+/// Removes all lights, the background and reflections.
 fn unlit(shown: &mut Scene) {
     darken(shown);
     shown.background = DVec3::ZERO;
@@ -202,7 +202,7 @@ fn unlit(shown: &mut Scene) {
     }
 }
 
-/// Gives each object a colour of its own, which no light changes.
+/// Gives each object its own colour, independent of lighting.
 fn flat(shown: &mut Scene) {
     darken(shown);
     shown.ambient_intensity = 1.0;
@@ -225,7 +225,7 @@ fn flat(shown: &mut Scene) {
     }
 }
 
-/// A light colour of a hue in turns.
+/// Returns a light colour with a hue given in turns.
 fn hue(turns: f64) -> DVec3 {
     let channel = |off: f64| {
         let wave = ((turns + off).fract() * 6.0 - 3.0).abs() - 1.0;
@@ -248,7 +248,7 @@ mod tests {
         assert_eq!(Aspect::All.of(&demo), demo);
         for (aspect, name, _) in &Aspect::EACH[1..] {
             let shown = aspect.of(&demo);
-            // What the tracer writes instead is not the scene's to say.
+            // These aspects are produced by the tracer, from an unchanged scene.
             let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Again);
             assert_eq!(shown == demo, is_traced, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
@@ -263,7 +263,7 @@ mod tests {
         );
     }
 
-    /// The sum of two colours of 8 bits, each channel at most 255, but for rounding.
+    /// The three terms add up to the whole, per 8-bit channel, capped at 255 and within rounding.
     #[test]
     fn the_terms_of_the_demo_add_up_to_its_picture_without_mirrors() {
         let demo = Scene::demo();
@@ -277,7 +277,7 @@ mod tests {
         let whole = picture(Aspect::WithoutMirrors);
         for (n, whole) in whole.iter().enumerate() {
             for channel in 0..3 {
-                // The markers are seen in every aspect.
+                // Markers are visible in every aspect.
                 let parts = parts.each_ref().map(|part| u32::from(part[n][channel]));
                 let sum = parts.iter().sum::<u32>().min(255);
                 let whole = u32::from(whole[channel]);

@@ -1,4 +1,4 @@
-//! The camera as the file stores it, and the frame that its vectors span.
+//! The camera as stored in the file, and the coordinate frame that its vectors define.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::direction::unit;
 use super::notation;
 
-/// Where a picture is taken from, and how.
+/// Position, orientation and projection of the camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Camera {
@@ -17,10 +17,10 @@ pub struct Camera {
     /// Viewing direction; any length but zero.
     #[serde(with = "notation::vector")]
     pub look_at: DVec3,
-    /// Roughly upwards; any direction that is not along `look_at`.
+    /// Roughly the upward direction; any vector that is not parallel to `look_at`.
     #[serde(with = "notation::vector")]
     pub up: DVec3,
-    /// Whether rays spread from the eye or run side by side.
+    /// The kind of projection.
     pub projection: Projection,
     /// Distance of the image plane from the eye, in image heights (perspective only).
     #[serde(with = "notation::number")]
@@ -30,40 +30,40 @@ pub struct Camera {
     pub orthographic_height: f64,
 }
 
-/// A view to come back to.
+/// A saved view.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bookmark {
-    /// What it is called.
+    /// Name of the view.
     pub name: String,
     /// The camera.
     pub camera: Camera,
 }
 
-/// How rays leave the camera.
+/// The kind of projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Projection {
-    /// From one point through every pixel.
+    /// Rays spread from the eye through every pixel.
     Perspective,
-    /// Side by side.
+    /// Rays are parallel.
     Orthographic,
 }
 
-/// A camera, ready to be asked where in its picture things are.
+/// A camera prepared for projecting points into its picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Framing {
-    /// From camera to world coordinates.
+    /// Transform from camera to world coordinates.
     frame: DAffine3,
     projection: Projection,
     projection_distance: f64,
     orthographic_height: f64,
 }
 
-/// Room around what is brought into a picture.
+/// Factor by which a framed sphere is enlarged, to leave a margin around it.
 const ROOM: f64 = 1.15;
 /// Smallest sine of the angle between `look_at` and `up` that still defines a basis.
 const MIN_SINE: f64 = 1e-6;
-/// How far apart directions, and places as shares of their coordinates, are that rounding may have moved.
+/// Largest difference that rounding may cause, in directions, and in positions as a share of their coordinates.
 const SAME_VIEW: f64 = 1e-9;
 
 impl Camera {
@@ -82,7 +82,7 @@ impl Camera {
         Some(DMat3::from_cols(u, v, w))
     }
 
-    /// Whether it sees what another one sees, but for what rounding has moved.
+    /// Returns whether both cameras see the same up to rounding.
     pub fn is_like(&self, other: &Self) -> bool {
         let size = self.position.abs().max_element().max(1.0);
         let is_near = |one: DVec3, other: DVec3| one.abs_diff_eq(other, SAME_VIEW);
@@ -98,7 +98,7 @@ impl Camera {
             && is_near(self.up, other.up)
     }
 
-    /// Where things are in the picture. `None` without a basis.
+    /// Returns the mapping between world and picture. `None` without a basis.
     pub fn framing(&self) -> Option<Framing> {
         Some(Framing {
             frame: DAffine3::from_mat3_translation(self.basis()?, self.position),
@@ -108,14 +108,14 @@ impl Camera {
         })
     }
 
-    /// The camera where everything between two corners of a box is in its picture of this aspect (width over height),
-    /// looking the same way.
+    /// Returns the camera moved so that all of a box, given by two corners, is in the picture of this aspect ratio
+    /// (width over height). The viewing direction is unchanged.
     #[must_use]
     pub fn around(&self, aspect: f64, (low, high): (DVec3, DVec3)) -> Self {
         let (middle, radius) = (low * 0.5 + high * 0.5, (high - low).length() * 0.5 * ROOM);
         let forward = self.look_at.normalize_or_zero();
         let mut next = self.clone();
-        // The narrower side of the picture, in picture heights.
+        // The shorter side of the picture, in picture heights.
         let side = aspect.min(1.0);
         let distance = match self.projection {
             Projection::Perspective => {
@@ -137,14 +137,14 @@ impl Camera {
 }
 
 impl Framing {
-    /// Place of a point in the picture, in image heights from its middle, y up; `None` behind the
+    /// Returns the position of a point in the picture, in image heights from its centre, y up; `None` behind the
     /// eye (perspective) or the view window (orthographic).
     pub fn project(&self, point: DVec3) -> Option<[f64; 2]> {
         self.place(point - self.frame.translation, self.orthographic_height)
     }
 
-    /// Place of what is endlessly far away in a direction; `None` behind, and where rays run side by
-    /// side: all of them end in one place there.
+    /// Returns the position in the picture of a point at infinity in this direction. `None` behind the eye, and in
+    /// orthographic projection, where all such points coincide.
     pub fn project_direction(&self, direction: DVec3) -> Option<[f64; 2]> {
         match self.projection {
             Projection::Perspective => self.place(direction, 1.0),
@@ -163,8 +163,8 @@ impl Framing {
         (depth > 0.0 && place.iter().all(|part| part.is_finite())).then_some(place)
     }
 
-    /// Origin and unit direction of the ray through a place in the picture, in image heights from
-    /// its middle, y up.
+    /// Returns the origin and unit direction of the ray through a position in the picture, in image heights from
+    /// its centre, y up.
     pub fn ray(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
         let DAffine3 {
             matrix3: basis,

@@ -1,4 +1,4 @@
-//! Objects that fill the same surface: which of them is seen there, rounding would decide.
+//! Objects that share a surface, where only rounding would decide which of them is seen.
 
 use glam::DVec3;
 
@@ -8,16 +8,18 @@ use super::mesh_coincidence::{counts_down, meet, mesh_coincidences, widened};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape, Sphere};
 
-/// Most objects that are looked at: some ten milliseconds.
+/// Largest number of objects that are examined: takes some ten milliseconds.
 const MOST_OBJECTS: usize = 200_000;
 
-/// Most pairs of flat objects whose boxes are held against each other, and most of those that meet which are: as long.
+/// Largest number of pairs of flat objects whose bounding boxes are compared, and of those with overlapping boxes
+/// whose surfaces are: takes as long.
 const MOST_PAIRS: usize = 4_000_000;
 const MOST_COMPARED: usize = 200_000;
 
-/// All pairs of visible objects that fill the same surface, sorted; coordinates count from `centre`. Where there are
-/// hundreds of thousands of objects, none is looked at; of thousands of flat ones in the same place, faces of large
-/// meshes, or hundreds of meshes across tens of thousands of others, some may be missed.
+/// Returns all pairs of visible objects that share a surface, sorted. Coordinates are taken relative to `centre`.
+/// With hundreds of thousands of objects, nothing is examined. Some pairs may be missed with thousands of flat
+/// objects in one place, with large meshes, or with hundreds of meshes that overlap tens of thousands of other
+/// objects.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_OBJECTS {
         return Vec::new();
@@ -82,7 +84,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     found
 }
 
-/// Adds the balls that are one but for the last digits of their numbers: the earliest stays.
+/// Adds the spheres that are identical up to rounding, each paired with the first of them in the list.
 fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
     balls.sort_by(|(_, one), (_, other)| one.along().total_cmp(&other.along()));
     let mut is_known = vec![false; balls.len()];
@@ -112,11 +114,11 @@ fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
     }
 }
 
-/// A flat object that ends.
+/// A bounded flat object.
 struct FlatPiece {
     index: usize,
     flat: PlanePiece,
-    /// The box around it, a little wider than it is.
+    /// Its bounding box, slightly widened.
     around: (DVec3, DVec3),
 }
 

@@ -1,12 +1,12 @@
-//! What two scenes do not share, in words.
+//! Differences between two scenes, described in words.
 
 use std::collections::BTreeMap;
 
 use super::whole::Scene;
 use crate::words::{counted, listed};
 
-/// What is different in `other`, one line for each kind of thing: `2 objects added: A, B`. Nothing for equal
-/// scenes.
+/// Describes what changed from `scene` to `other`, one line per kind of change, such as `2 objects added: A, B`.
+/// Empty for equal scenes.
 pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
     named(
@@ -51,7 +51,7 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     lines
 }
 
-/// Things that are known by their names.
+/// Appends a line each for the added, removed and changed items, which are identified by name.
 fn named<'a, T: PartialEq + 'a>(
     one: &str,
     before: impl Iterator<Item = (&'a String, &'a T)>,
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(lines[1], "1 light added: Lamp");
         assert!(lines[2].starts_with("1 light removed: "));
         assert_eq!(lines[3], "the camera changed");
-        // Also beside other differences.
+        // These are also reported next to other differences.
         let mut dimmed = scene.clone();
         dimmed.ambient_intensity *= 0.5;
         dimmed.background.x += 1.0;

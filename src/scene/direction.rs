@@ -1,14 +1,15 @@
-//! Directions, however long they are written.
+//! Normalizing vectors of extreme length.
 
 use glam::DVec3;
 
-/// Lengths whose squares are numbers with all their digits.
+/// Range of lengths whose squares have full precision.
 const SQUARABLE: std::ops::Range<f64> = 1e-140..1e140;
 
-/// The power of two that smaller ones are multiplied by, and larger ones divided: it costs no digit.
+/// Exponent of the power of two by which shorter vectors are multiplied and longer ones divided, without loss of
+/// precision.
 const SCALE: i32 = 600;
 
-/// The unit vector in this direction; `None` for none.
+/// Returns the unit vector in the direction of `vector`; `None` if it has no direction.
 pub fn unit(vector: DVec3) -> Option<DVec3> {
     let size = vector.abs().max_element();
     if SQUARABLE.contains(&size) {

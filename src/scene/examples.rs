@@ -1,4 +1,4 @@
-//! The scenes that every copy of the program has with it.
+//! The example scenes embedded in the program.
 
 use std::sync::Arc;
 
@@ -7,13 +7,13 @@ use super::shape::{Mesh, MeshSource};
 use super::whole::Scene;
 use crate::mesh::read_ply;
 
-/// A scene to begin with.
+/// An example scene.
 #[derive(Debug)]
 pub struct Example {
-    /// What it is called: the name of its file, without the ending.
+    /// File name without its extension.
     pub name: &'static str,
     text: &'static str,
-    /// What its mesh file holds, if it refers to one.
+    /// Contents of its mesh file, if it refers to one.
     mesh: Option<&'static [u8]>,
 }
 
@@ -27,7 +27,7 @@ macro_rules! example {
     };
 }
 
-/// Every example, the demo first.
+/// All examples, the demo first.
 pub const EXAMPLES: [Example; 7] = [
     Example {
         name: "demo",
@@ -46,7 +46,7 @@ pub const EXAMPLES: [Example; 7] = [
 ];
 
 impl Example {
-    /// The example, ready to be opened; an empty scene if it is none, which a test rules out.
+    /// Returns the example as a document; an empty scene if its text is invalid, which a test rules out.
     pub fn document(&self) -> Document {
         let mut document =
             Document::from_text(self.text).unwrap_or_else(|_| Document::of(Scene::empty()));
@@ -72,7 +72,7 @@ impl Example {
         document
     }
 
-    /// What it shows, in a sentence.
+    /// Returns a one-sentence description: the first comment line of the text.
     pub fn words(&self) -> &'static str {
         let line = self.text.lines().next().unwrap_or_default();
         line.trim_start_matches("//").trim()

@@ -1,4 +1,4 @@
-//! The door between scenes and the disk: RON in, RON out, nothing half-done either way.
+//! Reading and writing scene files in RON. Both either succeed completely or change nothing.
 
 use std::fmt;
 use std::fs::File;
@@ -18,9 +18,9 @@ use crate::mesh::is_mesh_file;
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
-/// Deepest nesting of brackets; a scene needs five.
+/// Largest nesting depth of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
-/// Most characters of a line that an error shows, so that a file on one line stays readable.
+/// Largest number of characters of a line that an error shows: files of a single line stay readable.
 const EXCERPT: usize = 64;
 
 /// A scene and the comment header of its file.
@@ -39,47 +39,47 @@ pub enum SceneError {
     /// The text is not a valid scene.
     #[error("{0}")]
     Refused(Refusal),
-    /// The file has the name of a mesh file: nothing was read.
+    /// The file name is that of a mesh file; nothing was read.
     #[error("{path} is no scene but a mesh file: `glint convert {path} -o NAME.ron` makes a scene of it, and Import mesh in the File menu of the window adds it to one", path = .path.display())]
     Mesh {
         /// The file.
         path: PathBuf,
     },
-    /// The file is larger than any scene: nothing was read.
+    /// The file is larger than the limit for scenes; nothing was read.
     #[error("{path}: a scene file has at most {limit} bytes, this one has {found}", path = .path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
         /// Its length in bytes.
         found: u64,
-        /// The most that is read.
+        /// Largest number of bytes that is read.
         limit: u64,
     },
-    /// The scene cannot be put into words; no file was touched.
+    /// The scene cannot be serialized; no file was touched.
     #[error("the scene cannot be written: {0}")]
     Unwritable(ron::Error),
-    /// The disk said no.
+    /// An I/O error.
     #[error("cannot {verb} {path}: {source}", path = .path.display())]
     Disk {
-        /// What was tried: `read` or `write`.
+        /// What was attempted: `read` or `write`.
         verb: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system answered.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
 
-/// A refused text: where, what is wrong, and the line itself.
+/// Why a text was refused: position, message and an excerpt of the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// The file, or how the text is called.
+    /// The file name, or a name for the text.
     pub name: String,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong and what was expected, without a full stop.
+    /// What is wrong and what was expected, as a sentence without its full stop.
     pub sentence: String,
     /// The line around the column, at most [`EXCERPT`] characters.
     excerpt: String,
@@ -127,12 +127,12 @@ impl Document {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// [`SceneError`]: unreadable, too large, or refused with its place. Nothing is half-loaded.
+    /// [`SceneError`] if the file is unreadable, too large or refused. Nothing is loaded partially.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
         Self::load_stamped(path).map(|(document, _)| document)
     }
 
-    /// The same, with what the file held.
+    /// Like [`Self::load`], but also returns a stamp of the file's contents.
     ///
     /// # Errors
     /// See [`Self::load`].
@@ -141,7 +141,7 @@ impl Document {
             let path = path.to_owned();
             return Err(SceneError::Mesh { path });
         }
-        // Of before: what is written while it is read counts as new.
+        // Taken before reading, so that a write during the read counts as a later change.
         let modified = time_of(path);
         let bytes = read_bounded(path)?;
         let stamp = Stamp::of(&bytes, modified);
@@ -164,7 +164,7 @@ impl Document {
     /// Reads and checks a scene from RON text.
     ///
     /// # Errors
-    /// [`SceneError::Refused`], with `scene` in place of a file name.
+    /// [`SceneError::Refused`], with `scene` as the name of the text.
     pub fn from_text(text: &str) -> Result<Self, SceneError> {
         Self::parse("scene", text)
     }
@@ -181,18 +181,18 @@ impl Document {
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
             let found = offset_of(text, error.span.start.line, error.span.start.col);
-            // At the end of the last line, the parser is a letter behind.
+            // At the end of the last line, the parser's position is one character too early.
             if !text[found..].contains('\n')
                 && !text.ends_with(char::is_whitespace)
                 && let Err(error) = Self::parse(name, &format!("{text}\n"))
             {
                 return error;
             }
-            // The parser stops within a comment that ends the file.
+            // The parser stops inside a comment at the end of the file.
             let is_bare = text[header(text).len()..].trim().is_empty();
             let at = match &error.code {
                 _ if is_bare => text.trim_end().len(),
-                // It has read the sign of what must not have one.
+                // The parser's position is after the sign of a number that must not have one.
                 ron::Error::IntegerOutOfBounds if text[..found].ends_with('-') => found - 1,
                 _ => found,
             };
@@ -210,7 +210,7 @@ impl Document {
         }
     }
 
-    /// A scene without a header.
+    /// Creates a document without a header.
     pub fn of(scene: Scene) -> Self {
         Self {
             header: String::new(),
@@ -218,13 +218,13 @@ impl Document {
         }
     }
 
-    /// The text of the file: the header, then the scene in the one form that Glint writes.
+    /// Returns the text of the file: the header, then the scene in the standard layout.
     ///
     /// # Errors
-    /// [`SceneError::Unwritable`]; no scene is known that has no text.
+    /// [`SceneError::Unwritable`]; no scene is known for which this happens.
     pub fn to_text(&self) -> Result<String, SceneError> {
         let scene = pretty(&self.scene)?;
-        // The animation's lists are as long as the scene's: it is laid out like one, and put last.
+        // The animation's lists are as long as the scene's: it is laid out alike, and put last.
         let animation = pretty(&self.scene.animation)?.replace('\n', "\n    ");
         let scene = scene.strip_suffix(')').unwrap_or(&scene);
         Ok(format!(
@@ -233,17 +233,17 @@ impl Document {
         ))
     }
 
-    /// Writes the scene to `path`, whole or not at all. If the file there has comments that the
-    /// new text does not keep, it is copied to `NAME.bak` first; that path is returned.
+    /// Writes the scene to `path`, completely or not at all. If the existing file has comments that the new text
+    /// lacks, it is copied to `NAME.bak` first; the path of the copy is returned.
     ///
     /// # Errors
-    /// [`SceneError::Disk`]; the file at `path` is then untouched.
+    /// [`SceneError`], also if the text is too long to be read again; the file at `path` is then unchanged.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
         self.at(path).save_stamped(path).map(|(backup, _)| backup)
     }
 
-    /// The document as a file in this place has it: what is in no file beside it is in the scene itself, and what could
-    /// not be read elsewhere is looked for there.
+    /// Returns the document as it is saved at `path`: meshes whose files are not in that folder become inline, and
+    /// mesh files that could not be read before are looked for there.
     #[must_use]
     pub fn at(&self, path: &Path) -> Self {
         let folder = &folder_of(path);
@@ -253,7 +253,7 @@ impl Document {
         }
     }
 
-    /// Whether a text can be read again that is to be written to `path`.
+    /// Checks that a text to be written to `path` is short enough to be read again.
     ///
     /// # Errors
     /// [`SceneError::TooLarge`].
@@ -269,7 +269,7 @@ impl Document {
         })
     }
 
-    /// [`Self::save`] for a document that is [`Self::at`] this place, with what the file holds now.
+    /// Like [`Self::save`], for a document that [`Self::at`] returned for this path. Also returns the new stamp.
     ///
     /// # Errors
     /// See [`Self::save`].
@@ -290,7 +290,7 @@ impl Document {
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
     }
 
-    /// Whether the text of a scene has comments that this one has not.
+    /// Returns whether `text`, a scene file, has comments that this document lacks.
     fn loses_comments_of(&self, text: &str) -> bool {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let header = header(text);
@@ -300,7 +300,7 @@ impl Document {
     }
 }
 
-/// The folder of a file, from the root.
+/// Returns the absolute path of the folder of a file.
 fn folder_of(path: &Path) -> PathBuf {
     absolute(path)
         .parent()
@@ -308,7 +308,7 @@ fn folder_of(path: &Path) -> PathBuf {
         .unwrap_or_default()
 }
 
-/// One item of a list in each line. Texts have their line breaks escaped.
+/// Serializes a value with one list item per line. Line breaks in strings are escaped.
 fn pretty(value: &impl serde::Serialize) -> Result<String, SceneError> {
     let config = PrettyConfig::new()
         .struct_names(true)
@@ -320,10 +320,10 @@ fn pretty(value: &impl serde::Serialize) -> Result<String, SceneError> {
     text.map_err(SceneError::Unwritable)
 }
 
-/// Reads a text file no longer than a scene may be.
+/// Reads a text file, which must not be longer than a scene file may be.
 ///
 /// # Errors
-/// [`SceneError`]: unreadable, too large, or not UTF-8.
+/// [`SceneError`] if the file is unreadable, too large or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, SceneError> {
     let bytes = read_bounded(path)?;
     String::from_utf8(bytes).map_err(|error| SceneError::Disk {
@@ -361,8 +361,8 @@ fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneErro
     refuse(name, text, locate(text, &path), sentence)
 }
 
-/// Byte offset of a 1-based line and column in characters, moved past white space: the parser
-/// says where it stopped reading, the reader looks for what stands there.
+/// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports
+/// where it stopped, but readers look for the token there.
 fn offset_of(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text
         .split_inclusive('\n')

@@ -1,31 +1,33 @@
-//! Where the coordinates of pictures count from: near most of a scene, so that they are small and exact there.
+//! The origin of the coordinates in which pictures are traced: near most of a scene, so that coordinates are small
+//! and accurate there.
 
 use glam::DVec3;
 
 use super::whole::Scene;
 
-/// So many times as far as half of the objects, others may be for the middle of all to be near them. What counts as
-/// one surface is a share of the coordinates: the middle between a table and the moon would put all that is on the
-/// table into its plane.
+/// Largest ratio between the half size of the scene and the median reach of its objects for which the middle of the
+/// scene is the origin. The tolerance for coincident surfaces is a share of the coordinates: with an origin midway
+/// between a table and the moon, everything on the table would count as in its plane.
 const FAR: f64 = 1e3;
 
-/// Of more objects, so many are looked at, evenly spread over the list.
+/// Number of objects that are examined, evenly spread over the list, if there are more.
 const LOOKED_AT: usize = 1000;
 
-/// Where most of a scene is.
+/// The origin and extent of the main part of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoordinateFrame {
-    /// Where coordinates count from.
+    /// The origin of coordinates.
     pub centre: DVec3,
-    /// The largest coordinate of what is visible and has an end.
+    /// Largest coordinate, relative to the origin, of the visible bounded objects.
     pub farthest: f64,
-    /// The same without what is much farther away than most.
+    /// The same without objects much farther away than most.
     pub extent: f64,
 }
 
 impl CoordinateFrame {
-    /// The middle of the box around everything visible that has an end; where a few things are so far away that it
-    /// would be far from all others, the median of theirs and of the lights. `None` if nothing has an end.
+    /// Returns the frame of a scene, or `None` if no visible object is bounded. The origin is the centre of the
+    /// bounding box of all visible bounded objects; if a few distant objects move that far away from all others, it
+    /// is the median of the centres of objects and of the lights.
     pub fn of(scene: &Scene) -> Option<Self> {
         let (low, high) = scene.objects_bounds()?;
         let (middle, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
@@ -58,7 +60,7 @@ impl CoordinateFrame {
     }
 }
 
-/// The middle one of some numbers, the lower of two.
+/// Returns the median, the lower of two if the count is even.
 fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut numbers: Vec<f64> = numbers.collect();
     let middle = numbers.len().checked_sub(1)? / 2;

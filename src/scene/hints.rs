@@ -1,4 +1,4 @@
-//! What is probably not meant in a scene, though it is valid.
+//! Hints about valid but probably unintended properties of a scene.
 
 use glam::DVec3;
 
@@ -10,32 +10,32 @@ use super::object::Object;
 use super::shape::Shape;
 use super::whole::Scene;
 
-/// Most pairs of an object and a light that are held against each other.
+/// Largest number of pairs of an object and a light that are examined.
 const MOST_LIT: usize = 20_000;
 
-/// How near to a surface a light counts as on it, as a share of the distance that matters.
+/// Tolerance within which a light counts as on a surface, as a share of the relevant distances.
 const ON: f64 = 1e-9;
-/// Height of the eye above a plane below which it is seen edge-on, as a share of the scene's extent; or, where
-/// rays run side by side, their cosine with its normal.
+/// Height of the eye above a plane, as a share of the scene's extent, below which the plane is seen edge-on. In
+/// orthographic projection, the same limit applies to the cosine between view direction and normal.
 const EDGE_ON: f64 = 1e-6;
 
-/// Something that is probably not meant.
+/// A probably unintended property of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hint {
-    /// What, as a sentence.
+    /// Description, as a sentence.
     pub words: String,
-    /// What it is about.
+    /// The affected part of the scene.
     pub about: About,
-    /// Whether it is there twice: one of both can be hidden.
+    /// Whether the object is a duplicate of another one, so that one of them can be hidden.
     pub is_twice: bool,
 }
 
-/// What a hint is about, by its place in the scene's list.
+/// The part of the scene that a hint is about; lists are indexed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum About {
     /// The camera.
     Camera,
-    /// The light that is everywhere.
+    /// The ambient light.
     World,
     /// A light.
     Light(usize),
@@ -55,14 +55,14 @@ impl Hint {
     }
 }
 
-/// Everything that is probably not meant.
+/// Returns all hints about a scene.
 pub fn hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = camera_hints(scene);
     hints.extend(thing_hints(scene));
     hints
 }
 
-/// What is wrong with where the camera is.
+/// Returns the hints about the position of the camera.
 pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
     let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
@@ -87,7 +87,7 @@ fn visible(scene: &Scene) -> impl Iterator<Item = (usize, &Object)> {
     objects.filter(|(_, object)| object.visible)
 }
 
-/// All else, which does not change where the camera moves.
+/// Returns all other hints, which do not depend on the camera.
 pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
     let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
@@ -106,7 +106,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
         }
     }
     let worn = scene.worn_packs();
-    // Where nothing is yet, the first thing is going to wear one.
+    // In an empty scene, the first object added will use a color pack.
     let packs = scene.color_packs.iter().enumerate();
     for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {
         if !worn.contains(name.as_str()) {
@@ -119,7 +119,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
     hints
 }
 
-/// Visible objects that fill the same surface; coordinates count from `centre`.
+/// Adds hints about visible objects that share a surface. Coordinates are taken relative to `centre`.
 fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, About, bool)) {
     let mut last = None;
     let found = coincidences(&scene.objects, centre).into_iter();
@@ -132,10 +132,10 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
         let looks_alike = scene.look_alike(later, earlier);
         let is_hidden = matches!(extent, Overlap::Standing | Overlap::Touching);
         if is_hidden || (extent == Overlap::Faces && looks_alike) {
-            continue; // Nobody sees which of them is in front.
+            continue; // Which of them is in front makes no visible difference.
         }
         if last.replace(later) == Some(later) {
-            continue; // Said already.
+            continue; // There is a hint about this object already.
         }
         let (object, other) = (&scene.objects[later], &scene.objects[earlier]);
         let is_twice = object.shape == other.shape || both_endless(&object.shape, &other.shape);

@@ -1,4 +1,4 @@
-//! Parts of a mesh file become objects of a scene.
+//! Turning the parts of a mesh file into objects of a scene.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -14,16 +14,16 @@ use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
 use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
 
-/// Packs that parts of one file have been given, by the names that they asked for.
+/// The color packs created for the parts of a file, by the names that the parts asked for.
 type PacksOfParts = HashMap<String, Vec<(ColorPack, String)>>;
 
-/// The pack of what a file gives no colours.
+/// Name of the color pack of parts without colours.
 const PLAIN: &str = "mesh";
 
 impl Scene {
-    /// A scene of a mesh file, seen whole and lit from two sides. A file of one part that lies in
-    /// `folder`, where the scene is to be saved, is referred to; all else is taken in. Beside it what
-    /// [`MeshFile::notes`](crate::mesh::MeshFile::notes) says.
+    /// Creates a scene of a mesh file, with everything in view and lit from two sides. If the file has a single
+    /// part and is in `folder`, where the scene is to be saved, the scene refers to it; otherwise meshes are
+    /// inline. Also returns [`MeshFile::notes`](crate::mesh::MeshFile::notes).
     ///
     /// # Errors
     /// [`MeshError`]: which file, where in it, and what is wrong.
@@ -41,7 +41,7 @@ impl Scene {
             && let Some(object) = scene.objects.get_mut(0)
             && let Shape::Mesh(mesh) = &mut object.shape
         {
-            // In the file's own coordinates, which are not moved to their middle.
+            // The mesh keeps the coordinates of the file, which are not centred.
             let mut linked = Mesh {
                 source: MeshSource::unread(near),
                 position: DVec3::ZERO,
@@ -56,7 +56,7 @@ impl Scene {
         Ok((scene, file.notes))
     }
 
-    /// Adds parts as objects behind the last, with their colours as packs. Gives the index of the first.
+    /// Appends parts as objects, with their colours as color packs. Returns the index of the first.
     pub fn add_parts(&mut self, parts: Vec<Part>) -> usize {
         let first = self.objects.len();
         let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
@@ -76,7 +76,7 @@ impl Scene {
         first
     }
 
-    /// The pack of a part: that of its colours, which may be there already.
+    /// Returns the name of the color pack for a part. An existing equal pack is reused.
     fn pack_of(
         &mut self,
         colors: Option<&PartColors>,
@@ -99,7 +99,7 @@ impl Scene {
         name
     }
 
-    /// Shows everything from the front, a little from above, and lights it from both sides.
+    /// Places the camera in front and a little above, so that everything is in view, and adds two lights.
     fn frame_and_light(&mut self) {
         let Some((low, high)) = self.objects_bounds() else {
             return;
@@ -129,7 +129,7 @@ impl Scene {
     }
 }
 
-/// How a scene names a file: with the same separators on every system.
+/// Returns the path of a file as written in a scene: with `/` as the separator on every system.
 fn reference_to(path: &Path) -> Option<String> {
     let parts = path.components().map(|part| part.as_os_str().to_str());
     Some(parts.collect::<Option<Vec<_>>>()?.join("/"))
@@ -150,7 +150,7 @@ fn color_pack(colors: &PartColors) -> ColorPack {
     let diffuse = color(colors.diffuse);
     let plain = plain_pack();
     ColorPack {
-        // Files mostly leave it black or white; what is lit by nothing but ambient light is then lost.
+        // Most files leave the ambient colour black or white; what only ambient light reaches would then be lost.
         ambient: diffuse,
         diffuse,
         specular: colors.specular.map_or(plain.specular, color),
@@ -161,7 +161,7 @@ fn color_pack(colors: &PartColors) -> ColorPack {
     }
 }
 
-/// A name as a scene can have it.
+/// Returns a valid name for a scene.
 fn tidy(name: &str) -> String {
     let plain: String = name.chars().filter(|c| !c.is_control()).take(100).collect();
     let plain = plain.trim();
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(pack.diffuse, DVec3::new(255.0, 128.0, 0.0));
         assert_eq!(pack.phong_exponent, 40.0);
         assert_eq!(scene.objects[1].color_pack, "red");
-        // Two parts are taken in, and read again as they are.
+        // Meshes of two parts are inline, and are read back unchanged.
         let document = Document::of(scene);
         let text = document.to_text().expect("a text");
         let again = Document::from_text(&text).expect("a scene");
@@ -250,7 +250,7 @@ mod tests {
         let text = std::fs::read_to_string(&file).expect("there");
         assert!(text.contains("Mesh(file: \"m.obj\")"), "{text}");
         assert_eq!(Document::load(&file).expect("read").scene, document.scene);
-        // In another folder there is no such file: the triangles are taken along.
+        // In another folder there is no such file: the mesh becomes inline.
         let elsewhere = tempfile::tempdir().expect("a folder");
         let file = elsewhere.path().join("s.ron");
         document.save(&file).expect("saved");
@@ -258,7 +258,7 @@ mod tests {
         let there = Document::load(&file).expect("read").scene;
         assert_eq!(there.mesh_problems().count(), 0);
         assert_eq!(there.objects_bounds(), document.scene.objects_bounds());
-        // Nor is there in its own any more.
+        // The file is missing in its own folder as well now.
         assert!(document.scene.gone_mesh_files().into_iter().eq(["m.obj"]));
         let file = folder.path().join("s.ron");
         document.save(&file).expect("saved");

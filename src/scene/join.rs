@@ -1,4 +1,4 @@
-//! Triangles that become one mesh, and a mesh that becomes triangles.
+//! Joining triangles and meshes into one mesh, and separating a mesh into triangles.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -14,19 +14,19 @@ use super::shape::{Mesh, Shape, Triangle};
 use super::whole::Scene;
 use crate::mesh::{Triangles, place_key};
 
-/// Most triangles that a mesh is taken apart into: each becomes an object with a name.
+/// Largest number of faces of a mesh that can be separated: each becomes an object with a name.
 pub const MOST_SEPARATE: usize = 10_000;
 
 impl Mesh {
-    /// Whether it has triangles, and few enough of them, to be taken apart.
+    /// Returns whether the mesh has triangles, and few enough to be separated.
     pub fn is_separable(&self) -> bool {
         (1..=MOST_SEPARATE).contains(&self.source.triangles().faces().len())
     }
 }
 
 impl Scene {
-    /// The triangles that hang together with the one at `index` by common corners, itself included, by
-    /// their indices; none if that is no triangle.
+    /// Returns the indices of all triangles connected to the one at `index` by shared corners, itself included;
+    /// empty if that object is not a triangle.
     pub fn connected_triangles(&self, index: usize) -> Vec<usize> {
         let corners = |object: &Object| match &object.shape {
             Shape::Triangle(triangle) => Some(triangle.corners().map(place_key)),
@@ -48,20 +48,20 @@ impl Scene {
             if std::mem::replace(&mut found[object], true) {
                 continue;
             }
-            // Each corner leads on once.
+            // Each corner is followed only once.
             waiting.extend(
                 own.iter()
                     .filter_map(|corner| users.remove(corner))
                     .flatten()
-                    // What is hidden is no part of what is seen.
+                    // Hidden triangles are not connected to visible ones.
                     .filter(|&other| is_seen(other) == is_seen(index)),
             );
         }
         (0..found.len()).filter(|&object| found[object]).collect()
     }
 
-    /// Puts a mesh in place of the triangles and meshes at these indices, in ascending order, with the name
-    /// and the pack of the first. Gives the index of the mesh; `None` if something else is among them.
+    /// Replaces the triangles and meshes at these indices (ascending) by one mesh with the name and the color pack
+    /// of the first. Returns the index of the mesh, or `None` if any other shape is among them.
     pub fn join(&mut self, joined: Vec<usize>) -> Option<usize> {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
@@ -88,7 +88,7 @@ impl Scene {
             ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
         };
         let gone = joined[1..].to_vec();
-        // A whole group that is one thing now is none.
+        // If all members of the group are joined, the mesh is in no group.
         let group = &self.objects[first].group;
         let is_in_it = |object: &&Object| object.group == *group;
         let members = self.objects.iter().filter(is_in_it).count();
@@ -123,8 +123,8 @@ impl Scene {
         Some(first)
     }
 
-    /// What moved an object moves the mesh at this place that has taken its name, which nothing turns; what moved
-    /// those that are gone goes too.
+    /// Keeps the position tracks of `object` for the mesh at `position` that took over its name, shifted
+    /// accordingly. Removes its rotation tracks, and all tracks of the objects in `gone`.
     fn keep_tracks_of<'a>(
         &mut self,
         object: &Object,
@@ -146,8 +146,8 @@ impl Scene {
             .for_each(|track| track.shift(further));
     }
 
-    /// Puts triangles in place of the mesh at `index`, if it is separable: a group of its name, if it is in none.
-    /// Where they are in the list.
+    /// Replaces the mesh at `index`, if it is separable, by its triangles; if it is in no group, they form one
+    /// named after it. Returns their indices.
     pub fn separate(&mut self, index: usize) -> Range<usize> {
         let object = self.objects.get(index);
         let Some((object, Shape::Mesh(mesh))) = object.map(|object| (object, &object.shape)) else {
@@ -169,7 +169,7 @@ impl Scene {
             .iter()
             .filter(|other| other.name != object.name);
         let mut names = Names::new(others.map(|other| other.name.as_str()));
-        // Slivers without an area are seen nowhere, and would be no triangles.
+        // Faces without area are invisible and would be invalid triangles: they are left out.
         let triangles = outer_corners(mesh).map(|[a, b, c]| Shape::from(Triangle { a, b, c }));
         let pieces: Vec<Object> = triangles
             .filter(|triangle| triangle.problem().is_none())
@@ -187,7 +187,7 @@ impl Scene {
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
-        // What moved it would move one of them.
+        // Tracks of the mesh would move only the triangle that inherits its name.
         let own = Owner::Object(&name);
         let is_moved = |track: &Track| track.target.owner() == Some(own);
         if self.animation.tracks.iter().any(is_moved) {
@@ -197,7 +197,7 @@ impl Scene {
     }
 }
 
-/// The corners of each face where they are in the world, clockwise seen from outside.
+/// Returns the corners of each face in world space, clockwise seen from outside.
 fn outer_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
     let is_mirrored = mesh.turn().determinant() < 0.0;
     let turned = move |[a, b, c]: [DVec3; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -315,8 +315,8 @@ mod tests {
         let (low, high) = scene.objects[2].shape.bounds().expect("it ends");
         assert_eq!(scene.join(vec![2, 3]), Some(2));
         assert_eq!((scene.faces(), check(&scene)), (4, Ok(())));
-        // The box of a turned mesh is that around its turned box: the joined one, which is not turned, is
-        // within it and what was joined to it.
+        // The bounds of a turned mesh enclose its turned local box. The joined mesh is not turned, so its bounds
+        // are within those of its parts.
         let (own_low, own_high) = Scene::demo().objects[5].shape.bounds().expect("it ends");
         let (low, high) = (low.min(own_low), high.max(own_high));
         let (new_low, new_high) = scene.objects[2].shape.bounds().expect("it ends");

@@ -1,4 +1,4 @@
-//! What can be done to keys: each gives a changed animation, for one step in the history.
+//! Operations on keys. Each returns a changed animation, for one undo step.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -9,25 +9,25 @@ use super::animation::{
 };
 use super::camera::Camera;
 
-/// Keys nearer to each other than this share of a frame are one.
+/// Share of a frame below which the distance of two keys counts as zero.
 const SAME: f64 = 0.25;
 
-/// Where a key is among all of an animation.
+/// Identifies a key of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct KeyPlace {
-    /// Place of the track that it belongs to; `None` for the camera.
+    /// Index of its track; `None` for the camera.
     pub track: Option<usize>,
-    /// Its place there, in order of time.
+    /// Index in the track, in order of time.
     pub index: usize,
 }
 
-/// Where several keys are.
+/// A set of keys.
 pub type Keys = BTreeSet<KeyPlace>;
-/// The way and the pace from a key to the next one.
+/// Interpolation and easing between a key and the next one.
 pub type Pace = (Interpolation, Easing);
 
 impl KeyPlace {
-    /// That of a key of the camera.
+    /// Identifies a key of the camera.
     pub fn of_camera(index: usize) -> Self {
         Self { track: None, index }
     }
@@ -38,39 +38,39 @@ impl Animation {
         (a - b).abs() < SAME / self.frames_per_second
     }
 
-    /// Place of the key that counts as being at this time, the nearest, if there is one: those of a recorded flight are
-    /// between frames, and the playhead is on one.
+    /// Returns the index of the key that counts as being at this time, the nearest if there are several. Keys of a
+    /// recorded flight are between frames, whereas the playhead is on one.
     fn place_at<T>(&self, keys: &[Key<T>], time: f64) -> Option<usize> {
         let off = |index: &usize| (keys[*index].time - time).abs();
         let near = (0..keys.len()).filter(|&index| self.is_near(keys[index].time, time));
         near.min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
-    /// Place of the camera key at this time, if there is one.
+    /// Returns the index of the camera key at this time, if any.
     pub fn key_at(&self, time: f64) -> Option<usize> {
         self.place_at(&self.keys, time)
     }
 
-    /// Whether a key that is moved takes the place of another: where it comes to be near it. Those that were near
-    /// each other before are two on purpose, as on both sides of a jump.
+    /// Returns whether a key that is moved from one time to another replaces the key at `other`, because it is near
+    /// it then. If the two were near each other before, that was intended, as on both sides of a jump.
     fn replaces(&self, (from, to): (f64, f64), other: f64) -> bool {
         let were_apart = !self.is_same_time(from, other);
         self.is_near(to, other) && (were_apart || (to - other).abs() < SAME_TIME)
     }
 
-    /// Whether times are of one frame, or nearly the same at the border between two.
+    /// Returns whether two times belong to the same frame, or are nearly the same on both sides of a boundary.
     fn is_near(&self, a: f64, b: f64) -> bool {
         self.nearest_frame(a) == self.nearest_frame(b) || self.is_same_time(a, b)
     }
 
-    /// With a camera key at this time, in place of one that is there; and its place.
+    /// Returns the animation with a camera key at this time, which replaces an existing one, and the key's index.
     pub fn with_key(&self, time: f64, camera: Camera) -> (Self, usize) {
         let mut animation = self.clone();
         let index = put(&mut animation.keys, self.key_at(time), (time, camera));
         (animation, index)
     }
 
-    /// Where all keys are, those of the camera first.
+    /// Returns all keys, those of the camera first.
     pub fn places(&self) -> Keys {
         let tracks = self.tracks.iter().enumerate();
         let rows = tracks.map(|(track, own)| (Some(track), own.keys.len()));
@@ -80,7 +80,7 @@ impl Animation {
             .collect()
     }
 
-    /// Whether the same things have as many keys as in another animation.
+    /// Returns whether both animations have the same tracks, with equal numbers of keys.
     pub fn has_places_of(&self, other: &Self) -> bool {
         let is_same =
             |(a, b): (&Track, &Track)| a.target == b.target && a.keys.len() == b.keys.len();
@@ -89,7 +89,7 @@ impl Animation {
         are_as_many && self.tracks.iter().zip(&other.tracks).all(is_same)
     }
 
-    /// When the key in a place is, and how it goes on from there; `None` if there is no such key.
+    /// Returns the time of a key, and interpolation and easing after it; `None` if there is no such key.
     pub fn at_place(&self, place: KeyPlace) -> Option<(f64, Pace)> {
         match place.track {
             None => self.keys.get(place.index).map(time_and_pace),
@@ -100,7 +100,7 @@ impl Animation {
         }
     }
 
-    /// What the key in a place is called.
+    /// Returns a label for a key.
     pub fn name_of(&self, KeyPlace { track, index }: KeyPlace) -> String {
         let number = index + 1;
         match track.and_then(|track| self.tracks.get(track)) {
@@ -109,7 +109,7 @@ impl Animation {
         }
     }
 
-    /// Without these keys; without a track, if those were all it had.
+    /// Returns the animation without these keys. Tracks that are empty then are removed.
     pub fn without_keys(&self, places: &Keys) -> Self {
         let mut animation = self.clone();
         retain_others(&mut animation.keys, None, places);
@@ -120,15 +120,16 @@ impl Animation {
         animation
     }
 
-    /// When the first and the last of these keys are, in seconds from the start.
+    /// Returns the times of the first and the last of these keys, in seconds from the start.
     pub fn span_of(&self, places: &Keys) -> Option<(f64, f64)> {
         let times = places.iter().filter_map(|place| self.at_place(*place));
         let spans = times.map(|(time, _)| (time, time));
         spans.reduce(|(first, last), (time, _)| (time.min(first), time.max(last)))
     }
 
-    /// With these keys, or copies of them, so many seconds later; each replaces what it lands on, and none goes before
-    /// the start or behind [`MAX_SECONDS`]. Also their new places.
+    /// Returns the animation with these keys, or copies of them, moved by `later` seconds, and their new places.
+    /// The shift is limited so that none is before the start or after [`MAX_SECONDS`]. Each moved key replaces the
+    /// one it lands on.
     pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
         let (first, last) = self.span_of(places).unwrap_or((0.0, MAX_SECONDS));
         let way = (later.clamp(-first, MAX_SECONDS - last), are_copies);
@@ -146,7 +147,7 @@ impl Animation {
         (animation, new)
     }
 
-    /// With the camera keys among these changed.
+    /// Returns the animation with `change` applied to the camera keys among these.
     pub fn with_each(&self, places: &Keys, change: impl Fn(&mut Key<Camera>)) -> Self {
         let mut animation = self.clone();
         for index in indices(places, None) {
@@ -157,7 +158,7 @@ impl Animation {
         animation
     }
 
-    /// With another way or pace from each of these keys.
+    /// Returns the animation with `change` applied to interpolation and easing of these keys.
     pub fn with_pace(&self, places: &Keys, change: impl Fn(&mut Pace)) -> Self {
         let mut animation = self.with_each(places, |key| set_pace(key, &change));
         for place in places {
@@ -171,14 +172,14 @@ impl Animation {
         animation
     }
 
-    /// Place of the key that the track in a place has at this time, if it has one.
+    /// Returns the key of a track at this time, if any.
     pub fn value_at(&self, track: usize, time: f64) -> Option<KeyPlace> {
         let index = self.place_at(&self.tracks.get(track)?.keys, time)?;
         let track = Some(track);
         Some(KeyPlace { track, index })
     }
 
-    /// Where the tracks are that move some of these, by what they move.
+    /// Returns the indices of the tracks that animate any of the wanted targets, by target.
     pub fn track_places<'t>(
         &self,
         wanted: impl IntoIterator<Item = &'t Target>,
@@ -191,12 +192,12 @@ impl Animation {
             .collect()
     }
 
-    /// With a key of a track at this time, in place of one that is there.
+    /// Returns the animation with a key for `target` at this time, which replaces an existing one.
     pub fn with_value(&self, target: &Target, time: f64, value: Value) -> Self {
         self.with_values([(target, value)], time)
     }
 
-    /// With keys of several tracks at this time; of each, in place of one that is there.
+    /// Returns the animation with keys for several targets at this time, which replace existing ones.
     pub fn with_values<'a>(
         &self,
         values: impl IntoIterator<Item = (&'a Target, Value)>,
@@ -218,13 +219,13 @@ impl Animation {
         animation
     }
 
-    /// Puts a key into the track in a place, instead of one that is there at this time.
+    /// Adds a key to a track, or replaces an existing one at this time.
     pub fn put_value(&mut self, track: usize, key: (f64, Value)) {
         let there = self.place_at(&self.tracks[track].keys, key.0);
         put(&mut self.tracks[track].keys, there, key);
     }
 
-    /// What belongs to a light or object follows its new name.
+    /// Renames the light or object that tracks refer to.
     pub fn follow_name(&mut self, owner: Owner, to: &str) {
         let tracks = self.tracks.iter_mut();
         for track in tracks.filter(|track| track.target.owner() == Some(owner)) {
@@ -232,7 +233,7 @@ impl Animation {
         }
     }
 
-    /// What belongs to those that are gone goes, too.
+    /// Removes the tracks of lights and objects that no longer exist.
     pub fn forget(&mut self, gone: &HashSet<Owner>) {
         let is_gone = |track: &Track| track.target.owner().is_some_and(|it| gone.contains(&it));
         self.tracks.retain(|track| !is_gone(track));
@@ -240,7 +241,7 @@ impl Animation {
 }
 
 impl Track {
-    /// The same for a copy of what it moves, of another name, so far from it.
+    /// Returns the track for a copy of its owner that has another name and is displaced by `by`.
     pub fn for_copy(&self, name: &str, by: DVec3) -> Self {
         let mut copy = Self {
             target: self.target.renamed(name),
@@ -252,7 +253,7 @@ impl Track {
         copy
     }
 
-    /// Moves the points of all keys, and what they go around.
+    /// Moves the points of all keys, and the centres of orbits.
     pub fn shift(&mut self, by: DVec3) {
         for key in &mut self.keys {
             if let Value::Point(point) = &mut key.value {
@@ -265,15 +266,15 @@ impl Track {
     }
 }
 
-/// Puts a value at a time: in place of that of a key which is there, or as a new key. Its place. The way between two keys
-/// stays what it was when there is one more on it: a cut is a cut, and a circle goes on.
+/// Sets the value at a time, either of the existing key `there` or of a new one. Returns its index. A new key takes
+/// the interpolation of the key before it, so that a cut stays a cut and an orbit continues.
 fn put<T>(keys: &mut Vec<Key<T>>, there: Option<usize>, (time, value): (f64, T)) -> usize {
     if let Some(there) = there {
         keys[there].value = value;
         let is_behind = |before: &Key<T>| before.time + SAME_TIME < time;
         let is_before = |next: &Key<T>| time + SAME_TIME < next.time;
         let (before, others) = keys.split_at_mut(there);
-        // At that time it is seen as it is put there, not only nearly.
+        // Moves the key to exactly this time, so that the value is exact there.
         if before.last().is_none_or(is_behind) && others.get(1).is_none_or(is_before) {
             others[0].time = time;
         }
@@ -298,7 +299,7 @@ fn set_pace<T>(key: &mut Key<T>, change: &impl Fn(&mut Pace)) {
     (key.interpolation, key.easing) = pace;
 }
 
-/// Those of the places that are in one row, in order.
+/// Returns the indices of the keys in `places` that belong to one track, in order.
 fn indices(places: &Keys, track: Option<usize>) -> Vec<usize> {
     let place = |index| KeyPlace { track, index };
     let own = places.range(place(0)..=place(usize::MAX));
@@ -314,7 +315,7 @@ fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, places: &Keys)
     });
 }
 
-/// Moves the keys of a row that are in these places, in order, or copies of them, so many seconds; their new places.
+/// Moves the keys at `indices` (ascending), or copies of them, by `later` seconds. Returns their new indices.
 fn move_row<T: Clone>(
     animation: &Animation,
     keys: &mut Vec<Key<T>>,
@@ -335,9 +336,9 @@ fn move_row<T: Clone>(
     let others = others.filter(|(index, _)| are_copies || indices.binary_search(index).is_err());
     let others: Vec<&Key<T>> = others.map(|(_, key)| key).collect();
     let near = 1.0 / animation.frames_per_second;
-    // The nearest of those that a key might replace: recorded keys may be much closer together than frames.
+    // Of the keys that a moved key may replace, the nearest: recorded keys may be much closer together than frames.
     let replaced = |key: &Key<T>| {
-        // A copy was nowhere before.
+        // A copy has no earlier position.
         let from = if are_copies {
             f64::INFINITY
         } else {

@@ -1,5 +1,5 @@
-//! Lists that share what did not change: a copy costs nothing, and a change of one item copies a
-//! chunk of its neighbours and a table of chunks, however long the list is.
+//! Lists with structural sharing: cloning is free, and changing one item copies only its chunk and the table of
+//! chunks, however long the list is.
 
 use std::collections::HashSet;
 use std::ops::{Index, IndexMut};
@@ -8,13 +8,13 @@ use std::sync::Arc;
 use serde::de::{Deserialize, Deserializer};
 use serde::ser::{Serialize, Serializer};
 
-/// Most items of a chunk: one is copied when an item of it changes.
+/// Largest number of items in a chunk, which is copied when any of them changes.
 const MOST: usize = 128;
 
-/// Bytes of text that an item may have elsewhere.
+/// Estimated number of bytes of text that an item refers to.
 const TEXT: usize = 32;
 
-/// A list of the scene.
+/// A list of scene items with structural sharing.
 #[derive(Clone, Debug)]
 pub struct List<T> {
     chunks: Arc<Vec<Chunk<T>>>,
@@ -22,50 +22,50 @@ pub struct List<T> {
 
 #[derive(Clone, Debug)]
 struct Chunk<T> {
-    /// Index of its first item.
+    /// Index of the first item.
     start: usize,
-    /// At least one.
+    /// The items, at least one.
     items: Arc<Vec<T>>,
 }
 
 impl<T: Clone> List<T> {
-    /// Nothing.
+    /// Creates an empty list.
     pub fn new() -> Self {
         Self {
             chunks: Arc::new(Vec::new()),
         }
     }
 
-    /// Whether it is the same list, unchanged since one was copied from the other; `false` may be wrong.
+    /// Returns whether both share all their items, so that they are equal. May be `false` for equal lists.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.chunks, &other.chunks)
     }
 
-    /// How many items there are.
+    /// The number of items.
     pub fn len(&self) -> usize {
         let last = self.chunks.last();
         last.map_or(0, |chunk| chunk.start + chunk.items.len())
     }
 
-    /// Whether there are none.
+    /// Returns whether the list has no items.
     pub fn is_empty(&self) -> bool {
         self.chunks.is_empty()
     }
 
-    /// The item at `index`, if there is one.
+    /// Returns the item at `index`, if any.
     pub fn get(&self, index: usize) -> Option<&T> {
         let chunk = &self.chunks.get(self.chunk_of(index)?)?;
         chunk.items.get(index - chunk.start)
     }
 
-    /// The item at `index`, if there is one, to be changed.
+    /// Returns the item at `index`, if any, for modification.
     pub fn get_mut(&mut self, index: usize) -> Option<&mut T> {
         let chunk = self.chunk_of(index)?;
         let chunk = Arc::make_mut(&mut self.chunks).get_mut(chunk)?;
         Arc::make_mut(&mut chunk.items).get_mut(index - chunk.start)
     }
 
-    /// The chunk that an index is in, or would be.
+    /// Returns the number of the chunk that contains `index`, or would.
     fn chunk_of(&self, index: usize) -> Option<usize> {
         let after = self.chunks.partition_point(|chunk| chunk.start <= index);
         after.checked_sub(1)
@@ -81,7 +81,7 @@ impl<T: Clone> List<T> {
         self.chunks.last().and_then(|chunk| chunk.items.last())
     }
 
-    /// All items in order.
+    /// Iterates over all items in order.
     pub fn iter(&self) -> Iter<'_, T> {
         Iter {
             chunks: self.chunks.iter(),
@@ -89,21 +89,21 @@ impl<T: Clone> List<T> {
         }
     }
 
-    /// All items in order, to be changed: every chunk is copied that is shared.
+    /// Iterates over all items in order, for modification. Every shared chunk is copied.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         let chunks = Arc::make_mut(&mut self.chunks).iter_mut();
         chunks.flat_map(|chunk| Arc::make_mut(&mut chunk.items).iter_mut())
     }
 
-    /// Adds an item behind the last.
+    /// Appends an item.
     pub fn push(&mut self, item: T) {
         self.insert(self.len(), item);
     }
 
-    /// Puts an item before the one at `index` ≤ [`Self::len`].
+    /// Inserts an item before the one at `index` ≤ [`Self::len`].
     ///
     /// # Panics
-    /// If there is no such place.
+    /// If `index` is too large.
     pub fn insert(&mut self, index: usize, item: T) {
         assert!(index <= self.len(), "no place {index} in the list");
         let Some(at) = self.chunk_of(index) else {
@@ -115,7 +115,7 @@ impl<T: Clone> List<T> {
         let items = Arc::make_mut(&mut chunk.items);
         items.insert(index - chunk.start, item);
         if items.len() > MOST {
-            // Whoever fills a list from one end leaves full chunks behind.
+            // Filling a list by appending leaves full chunks.
             let half = if index + 1 == chunk.start + items.len() {
                 MOST
             } else {
@@ -134,10 +134,10 @@ impl<T: Clone> List<T> {
         renumber(chunks, at);
     }
 
-    /// Takes the item at `index` out.
+    /// Removes and returns the item at `index`.
     ///
     /// # Panics
-    /// If there is none.
+    /// If `index` is out of range.
     pub fn remove(&mut self, index: usize) -> T {
         assert!(index < self.len(), "no item {index} in the list");
         let at = self.chunk_of(index).unwrap_or_default();
@@ -157,7 +157,7 @@ impl<T: Clone> List<T> {
         *self = self.iter().take(count).cloned().collect();
     }
 
-    /// Keeps the items that are wanted.
+    /// Keeps the items for which `is_wanted` returns true.
     pub fn retain(&mut self, mut is_wanted: impl FnMut(&T) -> bool) {
         *self = self
             .iter()
@@ -166,12 +166,12 @@ impl<T: Clone> List<T> {
             .collect();
     }
 
-    /// Forgets all items.
+    /// Removes all items.
     pub fn clear(&mut self) {
         *self = Self::new();
     }
 
-    /// About how many bytes this list has that another one does not share.
+    /// Estimates how many bytes of this list are not shared with another one.
     pub fn bytes_apart(&self, other: &Self) -> usize {
         let address = |chunk: &Chunk<T>| Arc::as_ptr(&chunk.items);
         let shared: HashSet<_> = other.chunks.iter().map(address).collect();
@@ -186,8 +186,8 @@ impl<T: Clone> List<T> {
         items * (size_of::<T>() + TEXT) + table * size_of::<Chunk<T>>()
     }
 
-    /// Pairs of an index and its item, of all items that are not known to be those of `other` in the
-    /// same places; `None` if the lists are not laid out alike.
+    /// Returns the items that may differ from those of `other` at the same index, with their indices; `None` if the
+    /// lists are divided into different chunks.
     pub fn changes<'a>(&'a self, other: &'a Self) -> Option<Vec<(usize, &'a T)>> {
         if Arc::ptr_eq(&self.chunks, &other.chunks) {
             return Some(Vec::new());
@@ -208,7 +208,7 @@ impl<T: Clone> List<T> {
     }
 }
 
-/// Counts the items of chunks from `first` on anew.
+/// Recomputes the start indices of the chunks from `first` on.
 fn renumber<T>(chunks: &mut [Chunk<T>], first: usize) {
     let mut start = chunks.get(first).map_or(0, |chunk| chunk.start);
     if first == 0 {
@@ -220,7 +220,7 @@ fn renumber<T>(chunks: &mut [Chunk<T>], first: usize) {
     }
 }
 
-/// The items of a [`List`] in order.
+/// Iterator over the items of a [`List`].
 #[derive(Clone, Debug)]
 pub struct Iter<'a, T> {
     chunks: std::slice::Iter<'a, Chunk<T>>,
@@ -247,7 +247,7 @@ impl<T: Clone> Default for List<T> {
 }
 
 impl<T: Clone + PartialEq> PartialEq for List<T> {
-    /// Chunks that are shared are not looked into.
+    /// Compares only the chunks that are not shared.
     fn eq(&self, other: &Self) -> bool {
         match self.changes(other) {
             Some(changes) => changes
@@ -310,7 +310,7 @@ impl<'a, T: Clone> IntoIterator for &'a List<T> {
 
 impl<T: Clone + Serialize> Serialize for List<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        // A list tells its length before its items.
+        // Serializers need the length before the items.
         let items: Vec<&T> = self.iter().collect();
         items.serialize(serializer)
     }
@@ -328,7 +328,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// A list does what a vector does, whatever is done to it, and copies keep what they had.
+        /// A list behaves like a vector under any operations, and its clones keep their contents.
         #[test]
         fn a_list_is_a_vector_that_shares(start in 0..400_usize, steps in prop::collection::vec((0..5_u8, 0..1000_usize), 0..60)) {
             let mut list: List<usize> = (0..start).collect();

@@ -1,21 +1,21 @@
-//! Where in a RON text a value stands. The parser's positions are gone once the scene is data; a
-//! check that fails afterwards walks the text again to the field it means.
+//! Finding the position of a value in RON text. The parser's positions are lost once the scene is deserialized; for
+//! a problem found by a later check, the text is scanned again for the field concerned.
 
 use std::str::FromStr;
 
-/// One step from a value into its parts.
+/// One step of a path from a value to one of its parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathStep {
-    /// The named field of a struct.
+    /// A named field of a struct.
     Field(&'static str),
-    /// The item of a list or tuple, from 0.
+    /// An item of a list or tuple, counted from 0.
     Index(usize),
-    /// The value under a key of a map.
+    /// The value of a map key.
     Key(String),
 }
 
-/// Byte offset of the value that `path` leads to, or of the last value on the way that exists:
-/// a field that was left out is reported where its struct stands.
+/// Returns the byte offset of the value at `path`, or of the last existing value along it: a missing field is
+/// reported at the position of its struct.
 pub fn locate(text: &str, path: &[PathStep]) -> usize {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_preamble();
@@ -28,8 +28,8 @@ pub fn locate(text: &str, path: &[PathStep]) -> usize {
     cursor.at
 }
 
-/// The `version` that a text claims, if it has the shape of a scene at all. Read before anything
-/// else, so that a file from the future is refused by its version and not by its new fields.
+/// Returns the `version` that the text states, if it has the form of a scene. It is read first, so that a file of a
+/// newer version is refused for its version and not for unknown fields.
 pub fn claimed_version(text: &str) -> Option<u32> {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_preamble();
@@ -40,21 +40,21 @@ pub fn claimed_version(text: &str) -> Option<u32> {
     u32::from_str(digits).ok().filter(|_| is_there)
 }
 
-/// Whether the value that a text is names a field of its own.
+/// Returns whether the top-level value of the text has a field of this name.
 pub fn names_field(text: &str, name: &'static str) -> bool {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_preamble();
     cursor.enter(&PathStep::Field(name))
 }
 
-/// The comments (and blank lines) before the first value.
+/// Returns the comments and blank lines before the first value.
 pub fn header(text: &str) -> &str {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_space();
     &text[..cursor.at]
 }
 
-/// Whether comments stand after the first value: saving would lose them.
+/// Returns whether there are comments after the first value, which saving would lose.
 pub fn has_inner_comments(text: &str) -> bool {
     let mut cursor = Cursor {
         text,
@@ -83,7 +83,7 @@ impl<'a> Cursor<'a> {
         self.rest().chars().next()
     }
 
-    /// Passes white space and comments (block comments nest).
+    /// Skips white space and comments (block comments nest).
     fn skip_space(&mut self) {
         loop {
             let rest = self.rest();
@@ -117,7 +117,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Passes comments and `#![enable(…)]` attributes before the value.
+    /// Skips comments and `#![enable(…)]` attributes before the value.
     fn skip_preamble(&mut self) {
         self.skip_space();
         while self.rest().starts_with("#!") {
@@ -129,7 +129,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Passes one string, or one character of anything else.
+    /// Skips a string, or a single character of anything else.
     fn skip_token(&mut self, next: char) {
         let raw = self.rest().strip_prefix('r').map(|after| {
             let hashes = after.len() - after.trim_start_matches('#').len();
@@ -169,7 +169,7 @@ impl<'a> Cursor<'a> {
         &rest[..end]
     }
 
-    /// Passes one whole value, up to the comma or bracket that ends it.
+    /// Skips a whole value, up to the comma or bracket that ends it.
     fn skip_value(&mut self) {
         let mut depth = 0_usize;
         loop {
@@ -189,7 +189,8 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Steps into the value under the cursor; false, and the cursor anywhere, if it has no such part.
+    /// Moves into the part `step` of the value at the cursor. Returns false, with the cursor anywhere, if there is
+    /// none.
     fn enter(&mut self, step: &PathStep) -> bool {
         self.identifier();
         self.skip_space();
@@ -213,7 +214,7 @@ impl<'a> Cursor<'a> {
         false
     }
 
-    /// With the cursor on an item: moves to its value and says whether it is the one.
+    /// With the cursor at an item, moves to its value and returns whether it is the one that `step` means.
     fn item_matches(&mut self, step: &PathStep, index: usize) -> bool {
         let start = self.at;
         let found = match step {

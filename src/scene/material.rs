@@ -1,4 +1,4 @@
-//! Colour packs: the materials.
+//! Color packs: the materials.
 
 use std::fmt;
 use std::ops::Deref;
@@ -11,23 +11,23 @@ use serde::{Deserialize, Serialize};
 
 use super::notation;
 
-/// Largest Phong exponent; the highlight is then a few thousandths of a degree wide.
+/// Largest Phong exponent, at which a highlight is a few thousandths of a degree wide.
 pub const MAX_EXPONENT: f64 = 1e9;
 
 /// A material: colours are 0–255 per channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColorPack {
-    /// Colour without any light, scaled by the scene's ambient intensity.
+    /// Colour seen without any light, scaled by the scene's ambient intensity.
     #[serde(with = "notation::vector")]
     pub ambient: DVec3,
-    /// Colour of matte reflection.
+    /// Colour of diffuse reflection.
     #[serde(with = "notation::vector")]
     pub diffuse: DVec3,
-    /// Colour of the highlight, and of the mirror image if reflective.
+    /// Colour of highlights, and of the reflection if `reflective`.
     #[serde(with = "notation::vector")]
     pub specular: DVec3,
-    /// Sharpness of the highlight: 0 is flat, 16 soft, 1000 a pinpoint.
+    /// Sharpness of highlights: 0 is uniform, 16 soft, 1000 a pinpoint.
     #[serde(with = "notation::number")]
     pub phong_exponent: f64,
     /// Whether the surface mirrors the scene.
@@ -35,7 +35,7 @@ pub struct ColorPack {
 }
 
 impl ColorPack {
-    /// Equal where packs are.
+    /// Returns a key that is equal for equal color packs.
     pub fn key(&self) -> ([u64; 10], bool) {
         let Self {
             ambient: a,
@@ -45,7 +45,7 @@ impl ColorPack {
             reflective,
         } = self;
         let numbers = [a.x, a.y, a.z, d.x, d.y, d.z, s.x, s.y, s.z, *phong_exponent];
-        // There are two zeros, which are equal.
+        // 0.0 and -0.0 are equal.
         (numbers.map(|number| (number + 0.0).to_bits()), *reflective)
     }
 }
@@ -62,18 +62,18 @@ impl Default for ColorPack {
     }
 }
 
-/// Materials by name, in the order in which they are listed; a copy shares them.
+/// Color packs by name, in list order. Clones share the same map.
 #[derive(Clone, Debug, Serialize)]
 #[serde(transparent)]
 pub struct Packs(Arc<IndexMap<String, ColorPack>>);
 
 impl Packs {
-    /// Whether both share their packs, which then are the same.
+    /// Returns whether both share the same map, and so are equal; `false` does not mean that they differ.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 
-    /// The packs, to be changed; copied if they are shared.
+    /// Returns the map for modification, cloned first if it is shared.
     pub fn make_mut(&mut self) -> &mut IndexMap<String, ColorPack> {
         Arc::make_mut(&mut self.0)
     }
@@ -93,14 +93,14 @@ impl From<IndexMap<String, ColorPack>> for Packs {
     }
 }
 
-/// Maps are equal in any order; these are listed in one.
+/// Compares the order as well, which equality of `IndexMap` ignores.
 impl PartialEq for Packs {
     fn eq(&self, other: &Self) -> bool {
         self.is_same(other) || self.as_slice() == other.as_slice()
     }
 }
 
-/// Refuses a name that comes twice.
+/// Rejects duplicate names.
 impl<'de> Deserialize<'de> for Packs {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(ReadPacks).map(Self::from)

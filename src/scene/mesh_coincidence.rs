@@ -1,4 +1,4 @@
-//! Faces of meshes that lie in something else, or that something lies in.
+//! Mesh faces that coincide with other surfaces.
 
 use std::cell::OnceCell;
 
@@ -9,49 +9,50 @@ use super::object::Object;
 use super::shape::{Describe as _, Mesh, Outline, PlanePiece, Shape, Triangle};
 use crate::mesh::are_closed;
 
-/// Most faces that are held against what is around them, of all pairs of objects.
+/// Largest number of faces that are compared with their surroundings, summed over all pairs of objects.
 const MOST_FACES: usize = 200_000;
 
-/// Most pairs of objects whose boxes are held against each other, and of faces that are: some ten milliseconds.
+/// Largest number of pairs of objects whose bounding boxes are compared, and of pairs of faces: takes some ten
+/// milliseconds.
 const MOST_BOXES: usize = 4_000_000;
 const MOST_PAIRS: usize = 2_000_000;
 
-/// Most faces of what is looked at whether it is a solid: a few milliseconds.
+/// Largest number of faces of a mesh that is tested for being a solid: takes a few milliseconds.
 const MOST_OF_SOLID: usize = 20_000;
 
-/// Most corners of faces that are held against endless planes: some ten milliseconds.
+/// Largest number of face corners that are compared with infinite planes: takes some ten milliseconds.
 const MOST_CORNERS: usize = 6_000_000;
 
-/// Share of its size by which a box is widened.
+/// Margin by which a bounding box is widened, as a share of its size.
 const LITTLE: f64 = 1e-6;
 
-/// Two visible objects, by their places in the list, that fill the same surface, in part or wholly.
+/// Two visible objects, by index, that share a surface in part or entirely.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Coincidence {
-    /// The later one, which is not seen where the earlier one is.
+    /// The later one in the list, which is hidden where the earlier one is.
     pub later: usize,
-    /// The earlier one.
+    /// The earlier one in the list.
     pub earlier: usize,
-    /// How much of the later one that is.
+    /// How they coincide.
     pub extent: Overlap,
 }
 
-/// How much of an object lies in the surface of another one.
+/// The way in which an object coincides with another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Overlap {
-    /// Nothing of it is left to be seen.
+    /// The later object is hidden entirely.
     Whole,
-    /// Some of what is flat lies in what is flat.
+    /// Flat objects overlap in part.
     Part,
-    /// Some faces of a mesh lie in something, or something lies in them.
+    /// Some faces of a mesh coincide with the other object.
     Faces,
-    /// A mesh stands on an endless plane or hangs below it, and has faces there.
+    /// A mesh stands on an infinite plane or hangs below it, with faces in the plane.
     Standing,
-    /// Faces of solids are against each other: what is there is seen from within alone.
+    /// Faces of solids touch from outside: the shared area is visible only from inside the solids.
     Touching,
 }
 
-/// What of a scene's visible meshes lies in something; coordinates count from `centre`.
+/// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
     let mut ended: Vec<BoxedSurface> = visible
@@ -92,7 +93,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
     let (mut seen, mut boxes) = (0, MOST_BOXES);
     for (place, one) in ended.iter().enumerate() {
         seen += usize::from(one.is_mesh());
-        // Of two that are no meshes others know, and there may be a wall of them.
+        // Pairs without a mesh are found elsewhere, and there may be very many of them.
         let others = if one.is_mesh() {
             &all[place + 1..]
         } else {
@@ -109,12 +110,12 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
     found
 }
 
-/// A flat object or a mesh, and the box around it, a little wider than it is; none if it has no end.
+/// A flat object or a mesh, and its slightly widened bounding box; `None` for an infinite plane.
 struct BoxedSurface<'a> {
     index: usize,
     shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
-    /// See [`Self::outer_side`]: many may stand against one.
+    /// Cached result of [`Self::outer_side`]: many objects may touch one.
     side: OnceCell<Option<f64>>,
 }
 
@@ -139,7 +140,8 @@ impl<'a> BoxedSurface<'a> {
         matches!(self.shape, Shape::Mesh(_))
     }
 
-    /// Whether the normals of its faces point out of it (1) or into it (-1); `None` if it is no solid, or a large one.
+    /// Returns whether the normals of the faces point outwards (1) or inwards (-1); `None` if the object is not a
+    /// solid, or has too many faces to test.
     fn outer_side(&self) -> Option<f64> {
         *self.side.get_or_init(|| self.find_outer_side())
     }
@@ -159,12 +161,12 @@ impl<'a> BoxedSurface<'a> {
         (volume != 0.0).then(|| volume.signum())
     }
 
-    /// Where it begins along x.
+    /// Lower end of the bounding box along x.
     fn start(&self) -> f64 {
         self.bounds.map_or(0.0, |(low, _)| low.x)
     }
 
-    /// Its flat pieces in a box, with the boxes around them.
+    /// Returns the flat pieces that meet the box `within`, with their bounding boxes.
     fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<Boxed> {
         let Shape::Mesh(mesh) = self.shape else {
             let piece = self.shape.plane_piece().zip(self.bounds);
@@ -182,25 +184,26 @@ impl<'a> BoxedSurface<'a> {
     }
 }
 
-/// One less, if there is any.
+/// Decrements a budget, and returns whether any of it was left.
 pub fn counts_down(left: &mut usize) -> bool {
     let is_left = *left > 0;
     *left = left.saturating_sub(1);
     is_left
 }
 
-/// A box, a little wider: flat ones have no height.
+/// Returns a slightly larger box: the bounding boxes of flat objects may have no height.
 pub fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
     let little = DVec3::splat(LITTLE * (high - low).max_element());
     (low - little, high + little)
 }
 
-/// Whether two boxes meet.
+/// Returns whether two boxes overlap or touch.
 pub fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
     one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
 }
 
-/// How a mesh lies in an endless plane, if any face of it does, and as far as so many corners may still be looked at.
+/// Returns how a mesh coincides with an infinite plane; `None` if no face is in the plane, or if the budget of
+/// corners in `left` does not suffice.
 fn on_plane(
     mesh: &Mesh,
     plane: &PlanePiece,
@@ -220,7 +223,7 @@ fn on_plane(
     });
     let reach = corners.map(|corner| (corner - centre).abs().max_element());
     let little = plane.height_in(centre, reach.fold(0.0, f64::max));
-    // Half of the box to each side, along the plane's normal.
+    // Extent of the box to each side of its middle, along the plane's normal.
     let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
     let across = (transform.matrix3.transpose() * plane.normal)
         .abs()
@@ -250,21 +253,20 @@ fn on_plane(
     })
 }
 
-/// How much may still be looked at.
+/// Remaining budget of a search.
 struct Search {
     centre: DVec3,
     faces: usize,
     pairs: usize,
-    /// The same where it is asked which sides of solids they are.
+    /// Separate budget of pairs for the sides of solids.
     pairs_of_sides: usize,
 }
 
-/// A flat piece, and the box around it.
+/// A flat piece and its bounding box.
 type Boxed = (PlanePiece, (DVec3, DVec3));
 
 impl Search {
-    /// How two objects that end have flat pieces in one plane; `None` if they have none, or where that is too much to
-    /// look at.
+    /// Returns how two bounded objects share a plane; `None` if they do not, or if the budget does not suffice.
     fn extent(&mut self, one: &BoxedSurface, other: &BoxedSurface) -> Option<Overlap> {
         let (around, other_around) = (one.bounds?, other.bounds?);
         if !meet(around, other_around) {
@@ -284,7 +286,8 @@ impl Search {
         if !self.either(&pieces, &|_| true) {
             return None;
         }
-        // All pairs are looked at where none is found: what others need to be found is not used up by that.
+        // If no pair is found here, all have been examined. This has its own budget, so as not to use up that of
+        // other objects.
         std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
         let sides = one.outer_side().zip(other.outer_side());
         let are_apart = sides.is_some_and(|(side, other)| {
@@ -299,13 +302,13 @@ impl Search {
         })
     }
 
-    /// Whether any piece of one coincides with one of the other, see [`Self::any`].
+    /// Returns whether any piece of one object coincides with one of the other, see [`Self::any`].
     fn either(&mut self, [one, other]: &[Vec<Boxed>; 2], is_wanted: &dyn Fn(f64) -> bool) -> bool {
         self.any(one, other, is_wanted) || self.any(other, one, is_wanted)
     }
 
-    /// Whether any piece coincides with one of the others that begins behind it along x, if the cosine between their
-    /// normals is wanted; both are sorted by that.
+    /// Returns whether any piece coincides with one of `others` that starts at the same x or later, among pairs
+    /// whose cosine between the normals satisfies `is_wanted`. Both lists must be sorted by the lower end along x.
     fn any(&mut self, pieces: &[Boxed], others: &[Boxed], is_wanted: &dyn Fn(f64) -> bool) -> bool {
         pieces.iter().any(|(piece, around)| {
             let from = others.partition_point(|(_, other)| other.0.x < around.0.x);
@@ -327,7 +330,8 @@ mod tests {
     use crate::mesh::Triangles;
     use crate::scene::{Disc, Plane};
 
-    /// A sheet of so many squares a side, that many units wide, whose middle is at `at`, turned by so many degrees.
+    /// Returns a sheet of `squares` × `squares` squares, `width` units wide, centred at `at` and turned by
+    /// `rotation` in degrees.
     fn sheet(squares: u32, width: f64, at: DVec3, rotation: DVec3) -> Mesh {
         let side = squares + 1;
         let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
@@ -401,14 +405,14 @@ mod tests {
             found(lower.clone(), cube(0.3, side)),
             Some(Overlap::Touching)
         );
-        // Their fronts are one surface.
+        // Their front faces are in one plane.
         assert_eq!(found(lower.clone(), cube(0.3, 0.3)), Some(Overlap::Faces));
         let mirrored = Mesh {
             scale: DVec3::new(1.0, -1.0, 1.0),
             ..cube(0.3, side)
         };
         assert_eq!(found(lower.clone(), mirrored), Some(Overlap::Touching));
-        // A sheet has no inside.
+        // A sheet is no solid.
         let lid = sheet(1, 1.0, DVec3::Y * side / 2.0, DVec3::X * 180.0);
         assert_eq!(found(lower, lid), Some(Overlap::Faces));
     }

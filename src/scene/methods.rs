@@ -1,36 +1,35 @@
-//! How a picture is traced, where that is not left to the plan: one type for each step that has
-//! competing ways, with one line for each way. Command line, scene file, window and lab read the same
-//! lists. The default of each is the robust one; others are kept to match old pictures and to show
-//! where they fail.
+//! Choice of methods for tracing a picture, where it is not left to the planner: one type per step that has several
+//! methods, one entry per method. Command line, scene file, user interface and lab use the same lists. The default
+//! of each step is the robust method; the others are kept to reproduce old pictures and to show where they fail.
 
 use std::fmt::Debug;
 
-/// There is no method of such an id.
+/// An unknown method id; holds the accepted ones.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("expected {0}")]
 pub struct UnknownMethod(String);
 
-/// A choice between ways of doing one step.
+/// A choice of method for one step.
 pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
-    /// Every way, the default first; those with a number in them with a usual one.
+    /// All methods, the default first; those with a parameter have a typical value.
     const ALL: &'static [MethodInfo<Self>];
 
-    /// What the command line and the file call it.
+    /// The id in the command line and the file.
     fn id(self) -> String {
         let method = Self::ALL.iter().find(|method| method.value == self);
         method.map_or(String::new(), |method| method.id.to_owned())
     }
 
-    /// What can be asked for, for people.
+    /// Describes the accepted ids to users.
     fn syntax() -> String {
         let ids: Vec<&str> = Self::ALL.iter().map(|method| method.id).collect();
         ids.join(", ")
     }
 
-    /// The way of this word.
+    /// Finds the method with this id.
     ///
     /// # Errors
-    /// [`UnknownMethod`], with what can be asked for.
+    /// [`UnknownMethod`], which describes the accepted ids.
     fn parse(id: &str) -> Result<Self, UnknownMethod> {
         let method = Self::ALL.iter().find(|method| method.id == id);
         let value = method.map(|method| method.value);
@@ -38,16 +37,16 @@ pub trait Method: Copy + PartialEq + Debug + Sized + 'static {
     }
 }
 
-/// A way of doing a step.
+/// A method with its description.
 #[derive(Clone, Copy, Debug)]
 pub struct MethodInfo<T> {
-    /// The choice.
+    /// The method.
     pub value: T,
-    /// What the command line and the file call it.
+    /// The id in the command line and the file.
     pub id: &'static str,
-    /// What it does.
+    /// A short explanation.
     pub what: &'static str,
-    /// Where it comes from.
+    /// The source of the method: a publication or a program.
     pub source: &'static str,
 }
 
@@ -67,10 +66,10 @@ const fn method<T>(
 
 const ORIGINAL: &str = "the original program";
 
-/// The real type of the kernel.
+/// The floating-point type of the kernels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Single, unless the scene needs double, or a sample does.
+    /// Single precision, unless the scene or a sample needs double.
     #[default]
     Auto,
     /// Single precision.
@@ -92,13 +91,13 @@ impl Method for Precision {
     ];
 }
 
-/// Ray against sphere.
+/// Ray–sphere intersection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SphereMethod {
-    /// The discriminant from the perpendicular: error grows with distance / radius.
+    /// Discriminant from the perpendicular: the error grows with distance / radius.
     #[default]
     Stable,
-    /// (d·x)² - x·x + R²: error grows with (distance / radius)².
+    /// (d·x)² - x·x + R²: the error grows with (distance / radius)².
     Classic,
 }
 
@@ -119,17 +118,17 @@ impl Method for SphereMethod {
     ];
 }
 
-/// Ray against triangle.
+/// Ray–triangle intersection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TriangleMethod {
-    /// Neighbours agree on their shared edge: nothing leaks through a mesh.
+    /// Adjacent triangles agree on their shared edge: nothing leaks through a mesh.
     #[default]
     Watertight,
-    /// The plane's hit, then one cross product per edge: leaks along edges.
+    /// Plane hit, then one cross product per edge: leaks along edges.
     Edges,
     /// Barycentric coordinates by Cramer's rule: leaks along edges.
     MollerTrumbore,
-    /// Planes through the origin and each edge: agrees along edges, leaks at corners.
+    /// Planes through the ray's origin and each edge: consistent along edges, leaks at corners.
     EdgePlanes,
 }
 
@@ -162,18 +161,18 @@ impl Method for TriangleMethod {
     ];
 }
 
-/// Where shadow and reflection rays start, so that a surface does not shadow itself.
+/// Origin of shadow and reflection rays, chosen so that a surface does not shadow itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RayOffset {
-    /// At the refined hit, ignoring the own primitive; a few roundings off it if it belongs to a
-    /// mesh. Has no length in it and so works at every scale.
+    /// At the refined hit, ignoring its own primitive; for meshes, offset by a few rounding errors. Contains no
+    /// absolute length, so it works at every scale.
     #[default]
     Robust,
     /// This many world units along the new ray.
     Fixed(f64),
     /// This share of the scene's diagonal along the new ray.
     Relative(f64),
-    /// 256 roundings of the hit's coordinates along the normal.
+    /// Along the normal by 256 units in the last place of the hit's coordinates.
     WachterBinder,
 }
 
@@ -234,13 +233,13 @@ impl Method for RayOffset {
     }
 }
 
-/// The power of a highlight.
+/// Computation of the power in a highlight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HighlightMethod {
-    /// The plain power for small exponents, the other form for large ones.
+    /// [`Self::Power`] for small exponents, [`Self::Log1p`] for large ones.
     #[default]
     Auto,
-    /// (n·h)^p: error grows with p.
+    /// (n·h)^p: the error grows with p.
     Power,
     /// exp(p·log1p(-|n - h|²/2)).
     Log1p,
@@ -264,15 +263,15 @@ impl Method for HighlightMethod {
     ];
 }
 
-/// How what rays can meet is found. All show the same picture, but for a last level on clean edges of dense crowds.
+/// Acceleration structure. All give the same picture, up to one level of 255 on smooth edges in dense crowds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Accelerator {
-    /// A list, or a tree where there are many.
+    /// A BVH for meshes and many shapes, otherwise a list.
     #[default]
     Auto,
-    /// One by one.
+    /// Each primitive in turn.
     List,
-    /// A tree of boxes.
+    /// A bounding volume hierarchy.
     Bvh,
 }
 
@@ -299,21 +298,21 @@ impl Method for Accelerator {
     ];
 }
 
-/// Largest number of samples along a side of a pixel.
+/// Largest number of samples along one side of a pixel.
 pub const MAX_GRID: u32 = 256;
-/// How often a pixel can be halved, not counting the last time, for the strongest edges.
+/// Largest number of times a pixel is halved, not counting one more halving at the strongest edges.
 pub const MAX_HALVINGS: u32 = 3;
 
-/// Where in its pixels a picture is sampled.
+/// Positions of the samples in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
-    /// Once, in the middle: edges are jagged.
+    /// One sample in the centre of the pixel: edges are jagged.
     Centres,
-    /// So many times so many (at most [`MAX_GRID`]), evenly.
+    /// A regular grid with this many samples per side, at most [`MAX_GRID`].
     Grid(u32),
-    /// At the corners, and inside where those differ.
+    /// Samples at the corners of the pixel, and inside where the corners differ.
     Adaptive {
-        /// Difference of the corners, summed over the channels, from which on they differ.
+        /// Difference of the corners, summed over the channels, above which they count as different.
         contrast: f64,
         /// How often a pixel is halved, at most [`MAX_HALVINGS`]; once more at the strongest edges.
         depth: u32,
@@ -321,7 +320,7 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// The usual adaptive sampling.
+    /// The default adaptive sampling.
     pub const ADAPTIVE: Self = Self::Adaptive {
         contrast: 0.06,
         depth: MAX_HALVINGS,
@@ -389,16 +388,16 @@ impl Method for Sampling {
     }
 }
 
-/// One choice per step that has competing formulas.
+/// One choice for each step that has several formulas.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Methods {
-    /// Ray against sphere.
+    /// Ray–sphere intersection.
     pub sphere: SphereMethod,
-    /// Ray against triangle.
+    /// Ray–triangle intersection.
     pub triangle: TriangleMethod,
-    /// Where shadow and reflection rays start.
+    /// Origin of shadow and reflection rays.
     pub offset: RayOffset,
-    /// The power of a highlight.
+    /// Computation of the power in a highlight.
     pub highlight: HighlightMethod,
 }
 

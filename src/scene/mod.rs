@@ -1,8 +1,8 @@
-//! What the scene file holds: data, its checks and its door to the disk. No caches, no pixels.
+//! The data model of the scene file: its types, their validation, reading and writing. No caches, no pixels.
 //!
-//! A new field gets a line here (with its default), a check in `check` and, if a person edits it,
-//! a row in the inspector. Colours are 0–255, lengths are world units; the
-//! camera stores direction vectors and no angles, as in the original program.
+//! A new field needs a line in its type (with its default), a check in `check` and, if users edit it, a row in the
+//! inspector. Colours are 0–255, lengths are in world units. The camera stores direction vectors, not angles, as in
+//! the original program.
 //!
 //! # The file
 //!

@@ -1,22 +1,22 @@
-//! What new things are called.
+//! Unique names for new items.
 
 use std::collections::{HashMap, HashSet};
 
-/// Most characters of a name.
+/// Largest number of characters of a name.
 pub const MAX_NAME: usize = 200;
-/// Those that a number may take up.
+/// Characters reserved for a number at the end of a name.
 const NUMBER: usize = 20;
 
-/// Names that are taken.
+/// A set of names that are taken.
 #[derive(Debug)]
 pub struct Names {
     taken: HashSet<String>,
-    /// For names without their numbers the number to go on with.
+    /// Next number to try, by name without number.
     next: HashMap<String, u64>,
 }
 
 impl Names {
-    /// These are taken.
+    /// Creates a set of taken names.
     pub fn new<'a>(taken: impl Iterator<Item = &'a str>) -> Self {
         Self {
             taken: taken.map(str::to_owned).collect(),
@@ -24,13 +24,13 @@ impl Names {
         }
     }
 
-    /// The name that is wanted, or the first of `BASE 2`, `BASE 3`, … that is free, where BASE is that name
-    /// without its number. It is then taken.
+    /// Takes the name `wanted` if it is free, or else the first free one of `BASE 2`, `BASE 3`, …, where BASE is
+    /// `wanted` without its number. Returns the name taken.
     pub fn take(&mut self, wanted: &str) -> String {
         if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();
         }
-        // With its number, it is no longer than a name may be.
+        // Leaves room for the number, so that the result is at most `MAX_NAME` characters long.
         let base: String = without_number(wanted)
             .chars()
             .take(MAX_NAME - NUMBER)
@@ -46,7 +46,7 @@ impl Names {
     }
 }
 
-/// A name without the number that is a word of its own.
+/// Returns the name without a trailing number that is a separate word.
 pub fn without_number(name: &str) -> &str {
     let is_number = |word: &str| word.bytes().all(|letter| letter.is_ascii_digit());
     match name.rsplit_once(' ') {

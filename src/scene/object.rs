@@ -1,4 +1,4 @@
-//! What is in a scene: objects and lights.
+//! Objects and lights of a scene.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -14,18 +14,18 @@ pub struct Object {
     pub name: String,
     /// Name of its material in [`super::Scene::color_packs`].
     pub color_pack: String,
-    /// Where and what it is.
+    /// Geometry, including position, size and orientation.
     pub shape: Shape,
-    /// An invisible object is not in the picture at all: no shadow, no reflection.
+    /// If false, the object is excluded from the picture entirely: it casts no shadow and has no reflection.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub visible: bool,
-    /// Name of the group that it is listed in; empty for none.
+    /// Name of the group that the outliner lists it in; empty for none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub group: String,
 }
 
 impl Object {
-    /// A visible object in no group.
+    /// Creates a visible object in no group.
     pub fn new(
         name: impl Into<String>,
         color_pack: impl Into<String>,
@@ -40,12 +40,12 @@ impl Object {
         }
     }
 
-    /// Whether it is a mesh whose faces are shaded as one curved surface.
+    /// Returns whether the object is a mesh whose faces are shaded as one curved surface.
     pub fn is_smooth(&self) -> bool {
         matches!(&self.shape, Shape::Mesh(mesh) if mesh.smooth > 0.0)
     }
 
-    /// How many triangles it has, if it is a mesh.
+    /// The number of triangles of a mesh; 0 for all other shapes.
     pub fn faces(&self) -> usize {
         match &self.shape {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
@@ -60,21 +60,21 @@ impl Object {
 pub struct Light {
     /// Unique name, shown in the outliner.
     pub name: String,
-    /// Where it shines from.
+    /// Position in world units.
     #[serde(with = "notation::vector")]
     pub position: DVec3,
     /// Brightness, 0–1.
     #[serde(default = "default_intensity", with = "notation::number")]
     pub intensity: f64,
-    /// What shows where the light is, if anything does.
+    /// Sphere drawn at the position of the light, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marker: Option<LightObj>,
-    /// An invisible light is switched off, marker included.
+    /// If false, the light is switched off and its marker is hidden.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub visible: bool,
 }
 
-/// The marker of a light: a sphere in the full ambient colour of its pack that casts no shadow.
+/// The marker of a light: a sphere that shows the full ambient colour of its color pack and casts no shadow.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LightObj {
@@ -94,12 +94,12 @@ impl Default for LightObj {
     }
 }
 
-/// Brightness of a light that a file says nothing about.
+/// Brightness of a light whose intensity the file leaves out.
 pub fn default_intensity() -> f64 {
     0.2
 }
 
-/// What most switches are.
+/// Default of the boolean fields that are on unless the file says otherwise.
 pub fn yes() -> bool {
     true
 }

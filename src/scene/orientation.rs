@@ -1,4 +1,4 @@
-//! The camera's angles: what flights and paths reckon with, in place of vectors.
+//! The camera's orientation as angles, which flights and paths use instead of vectors.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,23 +6,23 @@ use glam::DVec3;
 
 use super::camera::Camera;
 
-/// Steepest pitch: short of straight up, where yaw would lose its meaning.
+/// Largest pitch in radians: short of straight up, where yaw would be undefined.
 const MAX_PITCH: f64 = 89.9 * PI / 180.0;
 
-/// The angles of a camera in radians: R = Yaw · Pitch · Roll applied to a camera that looks along
-/// -z with +y up, with the matrices of the original program (roll first).
+/// The orientation of a camera as angles in radians: R = Yaw · Pitch · Roll applied to a camera that looks along -z
+/// with +y up, with the matrices of the original program (roll first).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Orientation {
-    /// Turn to the right about the world's y axis, from -π to π.
+    /// Rotation to the right about the world's y axis, from -π to π.
     pub yaw: f64,
     /// Upward tilt, from -π/2 to π/2 (the original program's angle b, negated).
     pub pitch: f64,
-    /// Lean to the right about the viewing direction, from -π to π.
+    /// Roll to the right about the viewing direction, from -π to π.
     pub roll: f64,
 }
 
 impl Orientation {
-    /// The angles of a camera's basis.
+    /// Returns the angles of a camera's basis.
     pub fn of(camera: &Camera) -> Self {
         let Some(basis) = camera.basis() else {
             return Self::default();
@@ -31,7 +31,7 @@ impl Orientation {
         let level = look.x.hypot(look.z);
         let pitch = look.y.atan2(level);
         if level > 1e-9 {
-            // With yaw and pitch taken away, u and v are turned by the roll alone.
+            // Without yaw and pitch, u and v differ from the axes by the roll alone.
             let yaw = look.x.atan2(-look.z);
             let flat = DVec3::new(yaw.cos(), 0.0, yaw.sin());
             let roll = (-flat.dot(v)).atan2(flat.dot(u));
@@ -41,7 +41,7 @@ impl Orientation {
                 roll: -roll,
             };
         }
-        // Straight up or down, yaw and roll are one: call it yaw.
+        // Looking straight up or down, yaw and roll are the same rotation: all of it is taken as yaw.
         Self {
             yaw: u.z.atan2(u.x),
             pitch,
@@ -49,7 +49,7 @@ impl Orientation {
         }
     }
 
-    /// Viewing direction and up vector, both of length 1 and at right angles.
+    /// Returns the viewing direction and the up vector: perpendicular unit vectors.
     pub fn vectors(self) -> (DVec3, DVec3) {
         let Self { yaw, pitch, roll } = self;
         let look = DVec3::new(
@@ -66,7 +66,7 @@ impl Orientation {
         (look, level_up * roll.cos() + right * roll.sin())
     }
 
-    /// The camera with these angles in place of its own.
+    /// Returns the camera with these angles instead of its own.
     pub fn apply(self, camera: &Camera) -> Camera {
         let (look_at, up) = self.vectors();
         Camera {
@@ -76,7 +76,8 @@ impl Orientation {
         }
     }
 
-    /// Turned to the right and upwards by so many radians; short of straight up and down.
+    /// Returns the orientation turned to the right and upwards by angles in radians. The pitch is limited to just
+    /// short of straight up and down.
     #[must_use]
     pub fn turned(self, yaw: f64, pitch: f64) -> Self {
         Self {
@@ -100,7 +101,7 @@ mod tests {
             ..Camera::default()
         };
         let angles = Orientation::of(&camera);
-        // sin b = 0.70 (its pitch, downwards) and sin c = -0.35 are what its report shows.
+        // The report on the original program has sin b = 0.70 (pitch, downwards) and sin c = -0.35.
         assert!((angles.pitch.sin() + 0.70).abs() < 0.01, "{angles:?}");
         assert!((angles.yaw.sin() + 0.35).abs() < 0.01, "{angles:?}");
         assert!(angles.roll.abs() < 0.02, "{angles:?}");

@@ -1,11 +1,11 @@
-//! Which packs are worn, and what is worn in place of others.
+//! Which color packs are used, and replacing some of them by others.
 
 use std::collections::{HashMap, HashSet};
 
 use super::whole::Scene;
 
 impl Scene {
-    /// The names of the packs that objects and markers wear.
+    /// Returns the names of the color packs that objects and markers use.
     pub fn worn_packs(&self) -> HashSet<&str> {
         let markers = self.lights.iter().filter_map(|light| light.marker.as_ref());
         let markers = markers.map(|marker| marker.color_pack.as_str());
@@ -13,9 +13,9 @@ impl Scene {
         objects.chain(markers).collect()
     }
 
-    /// Whoever wears a pack that has something `instead` wears that.
+    /// Replaces the color pack of every object and marker for which `instead` returns a name.
     pub fn wear_instead<'a>(&mut self, instead: impl Fn(&str) -> Option<&'a str>) {
-        // One by one: a list shares what is not changed with the states before.
+        // Element by element: unchanged elements stay shared with earlier undo states.
         for index in 0..self.objects.len() {
             if let Some(name) = instead(&self.objects[index].color_pack) {
                 name.clone_into(&mut self.objects[index].color_pack);
@@ -32,13 +32,14 @@ impl Scene {
         }
     }
 
-    /// Whether two objects look the same where they lie in each other: what is smooth has normals of its own.
+    /// Returns whether two objects look the same where their surfaces coincide. Smooth meshes never do, because
+    /// their shading normals vary.
     pub fn look_alike(&self, one: usize, other: usize) -> bool {
         let (one, other) = (&self.objects[one], &self.objects[other]);
         one.color_pack == other.color_pack && !one.is_smooth() && !other.is_smooth()
     }
 
-    /// Whether two packs are equal.
+    /// Returns whether any two color packs are equal.
     pub fn has_equal_packs(&self) -> bool {
         let mut keys = HashSet::new();
         !self
@@ -47,7 +48,7 @@ impl Scene {
             .all(|pack| keys.insert(pack.key()))
     }
 
-    /// Takes away each pack that is equal to one before it, which is worn in its place.
+    /// Removes every color pack that is equal to an earlier one, which replaces it.
     pub fn merge_equal_packs(&mut self) {
         let mut kept = HashMap::new();
         let mut instead = HashMap::new();

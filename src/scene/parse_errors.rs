@@ -1,8 +1,8 @@
-//! What the RON parser found wrong, in sentences for people.
+//! Readable messages for errors of the RON parser.
 
 use ron::Error;
 
-/// What is said of digits behind this text: a comma behind others may be meant for a point.
+/// Returns a hint for a number that follows `before`: a comma after digits may be meant as a decimal point.
 fn hint_of_decimals(before: &str) -> &'static str {
     let number = before.trim_end().strip_suffix(',');
     if number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit())) {
@@ -12,11 +12,11 @@ fn hint_of_decimals(before: &str) -> &'static str {
     }
 }
 
-/// The sentence for a parser's error, without a full stop, given the text up to there and from there on. `max_depth` is
-/// the parser's limit.
+/// Returns the message for a parser error, without a full stop, given the text before and after its position.
+/// `max_depth` is the nesting limit of the parser.
 pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) -> String {
     match error {
-        // Mostly a fourth number, where a colour or a place has three.
+        // Usually a fourth number in a colour or a vector of three.
         Error::ExpectedStructLikeEnd
             if before.trim_end().ends_with(',') && after.starts_with(is_of_number) =>
         {
@@ -26,7 +26,7 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
             let hint = hint_of_decimals(before);
             format!("expected the name of a field, found {name}{hint}")
         }
-        // It has taken what is before the point for a whole number, and wonders about the rest.
+        // The parser has read the digits before the decimal point as an integer.
         Error::ExpectedComma
             if before.ends_with(|c: char| c.is_ascii_digit()) && after.starts_with('.') =>
         {
@@ -117,14 +117,14 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
     }
 }
 
-/// Something of another type, as the parser has read it.
+/// Returns the message for a value of the wrong type.
 fn invalid_value(expected: &str, found: &str) -> String {
     let is_number = expected.contains("floating point");
     let expected = if is_number { "a number" } else { expected };
     format!("expected {expected}, found {found}")
 }
 
-/// Whether a number may begin with it.
+/// Returns whether a number can start with this character.
 fn is_of_number(letter: char) -> bool {
     letter.is_ascii_digit() || letter == '-'
 }

@@ -1,6 +1,5 @@
-//! Unsaved work, kept on disk while a document has changes, so that a crash or a killed process
-//! costs no edit. Each running program has a file of its own and holds a lock beside it; a file
-//! whose lock is free was left behind.
+//! Recovery files: unsaved changes, kept on disk so that a crash or a killed process loses no edit. Each running
+//! program has its own recovery file and holds a lock next to it; a file whose lock is free was left behind.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -9,40 +8,40 @@ use std::path::{Path, PathBuf};
 use super::file::Document;
 use crate::files::{Stamp, is_same_file, write_atomic};
 
-/// First line of a recovery file: the path of the document follows.
+/// Start of the first line of a recovery file, followed by the path of the document.
 const MARK: &str = "// unsaved changes of: ";
 
-/// Second line, if the document's file was read or written: what tells what that held then follows.
+/// Start of the second line, if the document's file has been read or written, followed by the hash of its contents.
 const BASE_MARK: &str = "// of the file that was: ";
 
-/// How the names of the files begin.
+/// Prefix of the names of recovery files.
 const NAME: &str = "unsaved-";
 
-/// This program's place for unsaved work.
+/// The recovery file of this program.
 #[derive(Debug)]
 pub struct Recovery {
     path: PathBuf,
     lock_path: PathBuf,
-    /// Held until the program ends, however it ends.
+    /// Held until the process ends, in whatever way.
     _lock: File,
 }
 
-/// Unsaved work that was left behind.
+/// Unsaved changes that an ended program left behind.
 #[derive(Debug)]
 pub struct Leftover {
     /// The scene.
     pub document: Document,
-    /// The file that it belongs to, if it had one.
+    /// The file of the document, if it had one.
     pub path: Option<PathBuf>,
-    /// What that file held when the work began.
+    /// Contents of that file when the changes began.
     pub stamp: Option<Stamp>,
 }
 
 impl Recovery {
-    /// Takes a place in `folder`, which is made if need be.
+    /// Reserves a recovery file in `folder`, which is created if needed.
     ///
     /// # Errors
-    /// What the system answered; the program then works without recovery.
+    /// Any I/O error; the program then works without recovery.
     pub fn new(folder: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         let mut number = std::process::id();
@@ -51,7 +50,7 @@ impl Recovery {
             let lock_path = path.with_extension("lock");
             let lock = File::create(&lock_path)?;
             match lock.try_lock() {
-                // A leftover of the same number is not to be overwritten.
+                // A leftover file with this number must not be overwritten.
                 Ok(()) if !path.exists() => {
                     return Ok(Self {
                         path,
@@ -65,13 +64,13 @@ impl Recovery {
         }
     }
 
-    /// Keeps the unsaved work of the document of `path`, a file that held what `stamp` tells.
+    /// Writes the unsaved changes of the document at `path`, a file whose contents match `stamp`.
     ///
     /// # Errors
-    /// What the system answered; the last kept state is then still there.
+    /// Any I/O error; the previously kept state is then still there.
     pub fn keep(&self, text: &str, path: Option<&Path>, stamp: Option<&Stamp>) -> io::Result<()> {
         let name = path.map_or(String::new(), |path| path.display().to_string());
-        // In one line.
+        // The path must be on one line.
         let name = if name.contains(['\n', '\r']) {
             serde_json::Value::from(name).to_string()
         } else {
@@ -83,18 +82,19 @@ impl Recovery {
         write_atomic(&self.path, format!("{MARK}{name}\n{base}{text}").as_bytes())
     }
 
-    /// There is no unsaved work (any more).
+    /// Removes the recovery file: there are no unsaved changes (any more).
     pub fn clear(&self) {
-        // What cannot be removed is offered for recovery once too often, which harms nobody.
+        // A file that cannot be removed is merely offered for recovery once too often.
         let _ = fs::remove_file(&self.path);
     }
 
-    /// Takes one piece of work that an ended program left in the folder, that of the file `of`, or any: it is kept here
-    /// from then on, in place of what was.
+    /// Takes one recovery file that an ended program left in the folder, for the document at `of` or for any. It
+    /// replaces this program's own recovery file.
     pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
-        // What was being written when a program was killed has another name: the file before it counts.
+        // A file that was being written when its program was killed has a different name; the previous version is
+        // used.
         let is_other = |path: &PathBuf| {
             let name = path.file_name().map(|name| name.to_string_lossy());
             name.is_some_and(|name| name.starts_with(NAME) && name.ends_with(".ron"))
@@ -129,7 +129,7 @@ fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
     };
     let stamp = Stamp::of_hash(base, Path::new(first));
     let mut document = Document::from_text(body).ok()?;
-    // What cannot be moved stays where it is: taken all the same, it would be found again and again.
+    // A file that cannot be renamed is not taken: it would be found again and again.
     fs::rename(path, to).ok()?;
     let _ = fs::remove_file(&lock_path);
     document.scene.load_meshes(Path::new(first).parent());
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(leftover.document.to_text().expect("text"), DEMO_TEXT);
         assert!(second.take_leftover(None).is_none(), "it is taken once");
         drop(second);
-        // Its program has ended as well, and had not kept it anew.
+        // The second program has ended as well, without writing the recovery file again.
         let third = Recovery::new(folder.path()).expect("a third place");
         assert!(third.take_leftover(None).is_some());
         let odd = Path::new("/a/b\nc.ron");

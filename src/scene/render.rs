@@ -1,4 +1,4 @@
-//! How a picture is made.
+//! Settings for rendering a picture.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +11,11 @@ use super::notation;
 /// Largest picture side, in pixels.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// Deepest chain of reflections that a scene may ask for.
+/// Largest reflection limit of a scene.
 pub const MAX_REFLECTIONS: u32 = 64;
 
-/// How the picture is made. What it is traced with is written to the file only where it differs from
-/// the default, which is what the scene needs.
+/// Settings for rendering a picture. Methods are written to the file only if they differ from the default, which
+/// suits every scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Render {
@@ -23,45 +23,45 @@ pub struct Render {
     pub width: u32,
     /// Height in pixels, 1–[`MAX_SIDE`].
     pub height: u32,
-    /// How often light may be mirrored on its way to the eye, 0–[`MAX_REFLECTIONS`].
+    /// Largest number of reflections on a path to the eye, 0–[`MAX_REFLECTIONS`].
     pub reflection_limit: u32,
-    /// How edges are smoothed.
+    /// Antialiasing.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub antialias: Sampling,
-    /// The real type of the kernel.
+    /// The floating-point type of the kernels.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub precision: Precision,
-    /// Ray against sphere.
+    /// Ray–sphere intersection.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub sphere: SphereMethod,
-    /// Ray against triangle.
+    /// Ray–triangle intersection.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub triangle: TriangleMethod,
-    /// Where shadow and reflection rays start.
+    /// Origin of shadow and reflection rays.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub offset: RayOffset,
-    /// The power of a highlight.
+    /// Computation of the power in a highlight.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
     )]
     pub specular: HighlightMethod,
-    /// How primitives are found.
+    /// Acceleration structure.
     #[serde(
         with = "notation::method",
         skip_serializing_if = "notation::is_default"
@@ -69,26 +69,26 @@ pub struct Render {
     pub accelerator: Accelerator,
 }
 
-/// A setting that has competing methods.
+/// A setting that selects one of several methods.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// What the file and the command line call it.
+    /// Name in the file and on the command line.
     pub name: &'static str,
-    /// What the inspector calls it.
+    /// Label in the inspector.
     pub label: &'static str,
-    /// What it decides, in a phrase.
+    /// What the setting decides, as a phrase.
     pub what: &'static str,
-    /// What comes before a method's id where the id alone says too little.
+    /// Text shown before a method's id that is not clear by itself.
     pub prefix: &'static str,
 }
 
-/// Something done with every setting.
+/// An operation applied to every setting.
 pub trait VisitSetting {
-    /// Does it with one; `value` may be changed.
+    /// Handles one setting; may change `value`.
     fn visit<M: Method>(&mut self, setting: Setting, value: &mut M);
 }
 
-/// Chooses the method of this id for the setting of this name.
+/// Selects the method `id` for the setting `name`.
 struct Choose<'a> {
     name: &'a str,
     id: &'a str,
@@ -104,16 +104,16 @@ impl VisitSetting for Choose<'_> {
     }
 }
 
-/// A method that a setting stands at.
+/// The method selected by a setting.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     /// The setting.
     pub setting: Setting,
-    /// The method's id, with its number if it has one.
+    /// The method's id, with its parameter if it has one.
     pub id: String,
-    /// What the method does, in a phrase.
+    /// What the method does, as a phrase.
     pub what: &'static str,
-    /// Whose it is.
+    /// The source of the method: a publication or a program.
     pub source: &'static str,
 }
 
@@ -122,7 +122,7 @@ struct AllChosen(Vec<Chosen>);
 impl VisitSetting for AllChosen {
     fn visit<M: Method>(&mut self, setting: Setting, value: &mut M) {
         let id = value.id();
-        // Numbers differ, and the method is the same: `grid:4` and `grid:8`.
+        // The parameter does not matter here: `grid:4` and `grid:8` are the same method.
         let name = |id: &str| id.split(':').next().map(str::to_owned);
         let mut methods = M::ALL.iter();
         let method = methods.find(|method| name(method.id) == name(&id));
@@ -136,7 +136,7 @@ impl VisitSetting for AllChosen {
 }
 
 impl Render {
-    /// What all settings stand at.
+    /// Returns the selected methods of all settings.
     pub fn chosen(&self) -> Vec<Chosen> {
         let mut all = AllChosen(Vec::new());
         self.clone().visit_settings(&mut all);
@@ -148,13 +148,13 @@ impl Render {
         f64::from(self.width) / f64::from(self.height)
     }
 
-    /// Chooses a method by the name of its setting and its id; without such ones, nothing changes.
+    /// Selects a method by the name of its setting and its id. Unknown names and ids are ignored.
     pub fn choose(&mut self, name: &str, id: &str) {
         self.visit_settings(&mut Choose { name, id });
     }
 
-    /// Shows every setting that has competing methods: flags, rows of the inspector and the lab's
-    /// candidates are made from this list.
+    /// Visits every setting that has several methods. Command-line flags, rows of the inspector and candidates of
+    /// the lab are created from this list.
     pub fn visit_settings(&mut self, visitor: &mut impl VisitSetting) {
         let setting = |name, label, what, prefix| Setting {
             name,
@@ -202,7 +202,7 @@ impl Render {
         );
     }
 
-    /// The formulas.
+    /// The selected formulas.
     pub fn methods(&self) -> Methods {
         Methods {
             sphere: self.sphere,
@@ -231,12 +231,12 @@ impl Default for Render {
 }
 
 impl Methods {
-    /// Whether spheres are hit where they are, and new rays start where they should.
+    /// Returns whether sphere hits and the origins of secondary rays are computed robustly.
     pub fn is_sound(&self) -> bool {
         self.sphere == SphereMethod::Stable && self.offset == RayOffset::Robust
     }
 
-    /// Whether, besides, nothing leaks between triangles.
+    /// Returns whether, in addition, no rays leak between adjacent triangles.
     pub fn is_tight(&self) -> bool {
         self.is_sound() && self.triangle == TriangleMethod::Watertight
     }

@@ -1,4 +1,4 @@
-//! What tracks move in a scene.
+//! Reading and writing the animated properties of a scene.
 
 use std::collections::{HashMap, HashSet};
 
@@ -7,13 +7,12 @@ use super::shape::Shape;
 use super::whole::Scene;
 
 impl Target {
-    /// The value in a scene; `None` if the scene has no such light or object, or it
-    /// has no such property.
+    /// Returns the value in `scene`; `None` if it has no such light or object, or that one has no such property.
     pub fn get(&self, scene: &Scene) -> Option<Value> {
         Owners::of(scene, [self]).get(scene, self)
     }
 
-    /// The value in a scene, where its owner is at `index`.
+    /// Returns the value in `scene`, given the index of the target's owner.
     fn get_at(&self, scene: &Scene, index: Option<usize>) -> Option<Value> {
         let light = || scene.lights.get(index?);
         let shape = || Some(&scene.objects.get(index?)?.shape);
@@ -50,7 +49,7 @@ impl Target {
             (Self::ObjectPosition(_), Value::Point(point)) => {
                 match scene.objects.get_mut(index).map(|object| &mut object.shape) {
                     None => {}
-                    // Of its faces, nothing is made anew.
+                    // Its faces are not rebuilt.
                     Some(Shape::Mesh(mesh)) => mesh.position = point,
                     Some(shape) => *shape = shape.placed(point),
                 }
@@ -66,7 +65,7 @@ impl Target {
     }
 }
 
-/// Where in a scene the lights and objects are that many targets name, found in one go.
+/// Indices of the lights and objects that a set of targets refers to, found in one pass over the scene.
 #[derive(Debug)]
 pub struct Owners<'a> {
     lights: HashMap<&'a str, usize>,
@@ -74,7 +73,7 @@ pub struct Owners<'a> {
 }
 
 impl<'a> Owners<'a> {
-    /// Where those of the targets are.
+    /// Finds the owners of `targets` in `scene`.
     pub fn of(scene: &Scene, targets: impl IntoIterator<Item = &'a Target>) -> Self {
         let (mut lights, mut objects) = (HashSet::new(), HashSet::new());
         for target in targets {
@@ -90,7 +89,7 @@ impl<'a> Owners<'a> {
         }
     }
 
-    /// Where the one of this target is in its list.
+    /// Returns the index of the target's owner in its list.
     pub fn index(&self, target: &Target) -> Option<usize> {
         match target.owner()? {
             Owner::Light(name) => self.lights.get(name),
@@ -99,19 +98,19 @@ impl<'a> Owners<'a> {
         .copied()
     }
 
-    /// [`Target::get`] for one of the targets in this scene.
+    /// Like [`Target::get`], for one of the targets that the owners were found for.
     pub fn get(&self, scene: &Scene, target: &Target) -> Option<Value> {
         target.get_at(scene, self.index(target))
     }
 
-    /// Puts a value of one of the targets into this scene; one of the wrong kind, or for what is not there, changes
-    /// nothing.
+    /// Writes the value of one of the targets to the scene. A value of the wrong type, or for a missing owner,
+    /// changes nothing.
     pub fn set(&self, scene: &mut Scene, target: &Target, value: Value) {
         target.set_at(scene, self.index(target), value);
     }
 }
 
-/// Where the first of each wanted name is.
+/// Returns the index of the first occurrence of each wanted name.
 fn places<'a, 's>(
     mut wanted: HashSet<&'a str>,
     names: impl Iterator<Item = &'s str>,

@@ -21,13 +21,12 @@ use super::object::{Light, LightObj, Object, default_intensity, yes};
 use super::render::Render;
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 
-/// The scene-file version that this program writes and the newest that it reads.
+/// The scene-file version that is written, and the newest that is read.
 pub const VERSION: u32 = 1;
-/// Longest scene file that is read, in bytes: room for meshes of 4,000,000 faces or 1,500,000 objects.
+/// Largest size in bytes of a scene file: enough for meshes of 4,000,000 faces or 1,500,000 objects.
 pub const MAX_BYTES: u64 = 256 << 20;
 
-/// Everything that makes a picture. A copy shares what is not changed. What a file leaves out has the
-/// value that the demo scene has.
+/// A complete scene. Clones share unchanged parts. Fields missing in a file have the values of the demo scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -37,37 +36,37 @@ pub struct Scene {
     #[serde(default)]
     #[serde(with = "notation::vector")]
     pub background: DVec3,
-    /// How much of every pack's ambient colour is seen without any light, 0–1.
+    /// Share of each color pack's ambient colour that is visible without any light, 0–1.
     #[serde(default = "default_ambient_intensity", with = "notation::number")]
     pub ambient_intensity: f64,
     /// Whether the markers of the lights are part of the picture.
     #[serde(default = "yes")]
     pub light_visualization: bool,
-    /// Where the picture is taken from.
+    /// The viewpoint of the picture.
     #[serde(default)]
     pub camera: Camera,
-    /// Views to come back to.
+    /// Saved views.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bookmarks: Vec<Bookmark>,
-    /// Materials by name, shared by the objects that name them; the order is the file's.
+    /// Color packs by name, in file order, shared by the objects that refer to them.
     #[serde(default = "default_packs")]
     pub color_packs: Packs,
-    /// The things that are seen, mirrored and cast shadows.
+    /// The objects, which are visible, are reflected and cast shadows.
     pub objects: List<Object>,
     /// The lights.
     #[serde(default = "default_lights")]
     pub lights: List<Light>,
-    /// How the picture is made.
+    /// Settings for rendering the picture.
     #[serde(default)]
     pub render: Render,
-    /// What moves, and when. Written with a layout of its own, one key in a line.
+    /// Keyframes of the camera and of other properties. Serialized separately, with one key per line.
     #[serde(default, skip_serializing)]
     pub animation: Arc<Animation>,
 }
 
 impl Scene {
-    /// Whether both have the same things in the same light, unchanged since one was copied from the other, whatever
-    /// looks at them; `false` may be wrong.
+    /// Returns whether objects, lights, color packs, background and ambient intensity are unchanged since one scene
+    /// was cloned from the other. May be `false` for equal ones.
     pub fn has_same_things(&self, other: &Self) -> bool {
         self.objects.is_same(&other.objects)
             && self.lights.is_same(&other.lights)
@@ -76,14 +75,14 @@ impl Scene {
             && self.ambient_intensity == other.ambient_intensity
     }
 
-    /// Whether the same camera sees the same picture of both; `false` may be wrong.
+    /// Returns whether both look the same to the same camera. May be `false` for equal scenes.
     pub fn has_same_look(&self, other: &Self) -> bool {
         self.has_same_things(other)
             && self.light_visualization == other.light_visualization
             && self.render == other.render
     }
 
-    /// An empty scene with the demo's camera, held level, and a pack and a light to start from.
+    /// Creates an empty scene with the demo's camera, held level, and a color pack and a light to start with.
     pub fn empty() -> Self {
         let mut light = default_lights().remove(0);
         light.marker = Some(LightObj::default());
@@ -108,27 +107,27 @@ impl Scene {
         }
     }
 
-    /// The colour packs, to be changed; copied if they are shared.
+    /// Returns the color packs for modification, cloned first if they are shared.
     pub fn packs_mut(&mut self) -> &mut IndexMap<String, ColorPack> {
         self.color_packs.make_mut()
     }
 
-    /// What moves, to be changed; copied if it is shared.
+    /// Returns the animation for modification, cloned first if it is shared.
     pub fn animation_mut(&mut self) -> &mut Animation {
         Arc::make_mut(&mut self.animation)
     }
 
-    /// The objects that are seen, in order.
+    /// Iterates over the visible objects, in order.
     pub fn visible_objects(&self) -> impl Iterator<Item = &Object> + Clone {
         self.objects.iter().filter(|object| object.visible)
     }
 
-    /// The lights that shine, in order.
+    /// Iterates over the lights that are switched on, in order.
     pub fn visible_lights(&self) -> impl Iterator<Item = &Light> + Clone {
         self.lights.iter().filter(|light| light.visible)
     }
 
-    /// About how many bytes this scene has that another one does not share.
+    /// Estimates how many bytes of this scene are not shared with another one.
     pub fn bytes_apart(&self, other: &Self) -> usize {
         let packs = if self.color_packs.is_same(&other.color_packs) {
             0
@@ -145,24 +144,24 @@ impl Scene {
         size_of::<Self>() + packs + animation + lists
     }
 
-    /// Smallest and largest corner of the box around everything visible that has an end, lights
-    /// included; `None` if there is nothing.
+    /// Returns the lowest and highest corner of the bounding box of all visible bounded objects and visible lights;
+    /// `None` if there are none.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let lights = self.visible_lights();
         let lights = lights.map(|light| (light.position, light.position));
         around(self.objects_bounds().into_iter().chain(lights))
     }
 
-    /// The same without lights.
+    /// Like [`Self::bounds`], without lights.
     pub fn objects_bounds(&self) -> Option<(DVec3, DVec3)> {
         let visible = self.visible_objects();
         around(visible.filter_map(|object| object.shape.bounds()))
     }
 
-    /// Reads the meshes that are files in `folder`, where the scene file is. What cannot be read is noted
-    /// with the mesh, which is then empty; see [`Self::mesh_problems`].
+    /// Reads the mesh files in `folder`, the folder of the scene file. A mesh that cannot be read is empty and
+    /// holds the problem; see [`Self::mesh_problems`].
     pub fn load_meshes(&mut self, folder: Option<&Path>) {
-        // What several objects refer to is read once, and shared by them.
+        // A file that several objects refer to is read once, and its triangles are shared.
         let mut files = MeshFiles::new();
         self.change_meshes(|mesh| {
             let mut loaded = mesh.clone();
@@ -171,13 +170,13 @@ impl Scene {
         });
     }
 
-    /// The same scene for a file in this folder: meshes that lie elsewhere, or whose files are gone, are taken in.
+    /// Returns the scene for saving in `folder`: meshes whose files are missing or in another folder become inline.
     #[must_use]
     pub fn taken_to(&self, folder: &Path) -> Self {
         let gone = self.gone_mesh_files();
         let references = self.mesh_sources().filter_map(MeshSource::reference);
         let mut elsewhere: BTreeSet<&Path> = references.map(|(own, _)| own).collect();
-        // A folder has many spellings.
+        // The same folder can be spelled in several ways.
         elsewhere.retain(|own| !is_same_file(own, folder));
         self.with_sources(|source| {
             let (own, path) = source.file()?;
@@ -186,7 +185,7 @@ impl Scene {
         })
     }
 
-    /// The same scene for a file in this folder: those files of meshes that could not be read elsewhere are looked for
+    /// Returns the scene for saving in `folder`: mesh files that could not be read in another folder are looked for
     /// there.
     #[must_use]
     pub fn looking_in(&self, folder: &Path) -> Self {
@@ -203,13 +202,14 @@ impl Scene {
         })
     }
 
-    /// The files of meshes that were read, by their paths.
+    /// Returns the relative paths of all mesh files that were read.
     pub fn mesh_paths(&self) -> BTreeSet<&str> {
         let files = self.mesh_sources().filter_map(MeshSource::file);
         files.map(|(_, path)| path).collect()
     }
 
-    /// The files of meshes that were read, and are not there any more. Each is looked for once, however many show it.
+    /// Returns the relative paths of mesh files that were read but no longer exist. Each file is checked once, even
+    /// if several meshes refer to it.
     pub fn gone_mesh_files(&self) -> BTreeSet<&str> {
         let files: BTreeSet<_> = self.mesh_sources().filter_map(MeshSource::file).collect();
         let gone = files
@@ -218,7 +218,7 @@ impl Scene {
         gone.map(|(_, path)| path).collect()
     }
 
-    /// The same scene with the meshes that were read of these files in itself.
+    /// Returns the scene with all meshes inline that were read from one of these files.
     #[must_use]
     pub fn without_files(&self, files: &BTreeSet<PathBuf>) -> Self {
         self.with_sources(|source| {
@@ -228,7 +228,7 @@ impl Scene {
         })
     }
 
-    /// Those of these files that were read for some mesh.
+    /// Returns those of `files` from which some mesh was read.
     pub fn shown_of<'f>(&self, files: &'f BTreeSet<PathBuf>) -> BTreeSet<&'f Path> {
         if files.is_empty() {
             return BTreeSet::new();
@@ -240,8 +240,8 @@ impl Scene {
         found.map(PathBuf::as_path).collect()
     }
 
-    /// The files that meshes refer to, whether they could be read or not: the folder, the path in it, and what marked
-    /// the file when it was read.
+    /// Returns all files that meshes refer to, whether they could be read or not: folder, relative path, and
+    /// modification time and length when it was read.
     pub fn mesh_files(&self) -> HashSet<(&Path, &str, Option<Marks>)> {
         let referring = self.mesh_sources().filter_map(|source| {
             let (folder, path) = source.reference()?;
@@ -250,8 +250,8 @@ impl Scene {
         referring.collect()
     }
 
-    /// The same scene with what was read anew of the files that its meshes refer to, but for what cannot be read any
-    /// more; `None` where that is in it already.
+    /// Returns the scene with its mesh files replaced by newly read ones, except for those that can no longer be
+    /// read; `None` if nothing changes.
     pub fn with_read(&self, read: &[MeshSource]) -> Option<Self> {
         let new = |source: &MeshSource| {
             let own = source.reference()?;
@@ -271,20 +271,21 @@ impl Scene {
         })
     }
 
-    /// The same scene with the triangles of all meshes: it needs no other files.
+    /// Returns the scene with all meshes inline, so that it needs no other files.
     #[must_use]
     pub fn taken_in(&self) -> Self {
         self.with_sources(MeshSource::taken_in)
     }
 
-    /// The same scene with a word in place of the triangles of each mesh, which is another word for other
-    /// triangles: what tells scenes apart without writing them down.
+    /// Returns the scene with a short identifier in place of the triangles of each mesh, different for different
+    /// triangles, so that scenes can be compared without writing them out in full.
     #[must_use]
     pub fn abridged(&self) -> Self {
         self.with_sources(|source| Some(source.abridged()))
     }
 
-    /// The same scene with other sources of its meshes, where there are some; what is left shares its room with this one.
+    /// Returns the scene with each mesh source replaced for which `change` returns another one. Everything else
+    /// stays shared.
     fn with_sources(&self, change: impl Fn(&MeshSource) -> Option<MeshSource>) -> Self {
         let mut scene = self.clone();
         scene.change_meshes(|mesh| {
@@ -297,7 +298,7 @@ impl Scene {
         scene
     }
 
-    /// Puts another mesh in place of each that shall have one.
+    /// Replaces each mesh for which `change` returns another one.
     pub(super) fn change_meshes(&mut self, mut change: impl FnMut(&Mesh) -> Option<Mesh>) {
         for index in 0..self.objects.len() {
             let Shape::Mesh(mesh) = &self.objects[index].shape else {
@@ -311,18 +312,18 @@ impl Scene {
         }
     }
 
-    /// How many triangles the meshes have, hidden ones as well.
+    /// The number of triangles of all meshes, including hidden ones.
     pub fn faces(&self) -> usize {
         self.objects.iter().map(Object::faces).sum()
     }
 
-    /// About how many bytes the triangles take that are written into the file of the scene.
+    /// Estimates how many bytes the triangles of inline meshes take in the scene file.
     pub fn own_bytes(&self) -> u64 {
         let own = self.own_triangles();
         own.map(|triangles| triangles.bytes_of_text()).sum()
     }
 
-    /// How many of them there are.
+    /// The number of triangles of inline meshes.
     pub fn own_faces(&self) -> usize {
         let own = self.own_triangles();
         own.map(|triangles| triangles.faces().len()).sum()
@@ -335,13 +336,13 @@ impl Scene {
             .map(MeshSource::triangles)
     }
 
-    /// Whether the triangles of some mesh are in a file of their own.
+    /// Returns whether any mesh refers to a file.
     pub fn has_mesh_files(&self) -> bool {
         let mut sources = self.mesh_sources();
         sources.any(|source| matches!(source, MeshSource::File { .. }))
     }
 
-    /// The objects whose meshes could not be read, and why.
+    /// Returns the indices of objects whose meshes could not be read, and why.
     pub fn mesh_problems(&self) -> impl Iterator<Item = (usize, &str)> {
         let objects = self.objects.iter().enumerate();
         objects.filter_map(|(index, object)| match &object.shape {
@@ -350,28 +351,28 @@ impl Scene {
         })
     }
 
-    /// The box around everything that ends, or around where endless planes are known to be.
+    /// Returns the bounding box of all visible bounded objects. If there are none, it is that of the lights.
     pub fn surroundings(&self) -> Option<(DVec3, DVec3)> {
         self.objects_bounds().or_else(|| self.bounds())
     }
 
-    /// The middle of that.
+    /// The centre of [`Self::surroundings`].
     pub fn middle(&self) -> Option<DVec3> {
         self.surroundings().map(|(low, high)| low.midpoint(high))
     }
 }
 
-/// The box around boxes, each by its lowest and highest corner; `None` for none.
+/// Returns the bounding box of boxes given by their lowest and highest corners; `None` if there are none.
 pub fn around(boxes: impl Iterator<Item = (DVec3, DVec3)>) -> Option<(DVec3, DVec3)> {
     boxes.reduce(|(low, high), (other_low, other_high)| (low.min(other_low), high.max(other_high)))
 }
 
-/// Ambient intensity of a scene whose file says nothing about it.
+/// Ambient intensity of a scene whose file leaves it out.
 pub fn default_ambient_intensity() -> f64 {
     0.5
 }
 
-/// What shows where lights are.
+/// Default color pack of light markers.
 pub fn light_pack() -> ColorPack {
     let yellow = DVec3::new(255.0, 255.0, 0.0);
     ColorPack {
@@ -402,8 +403,8 @@ fn default_packs() -> Packs {
     ]))
 }
 
-/// The demo's two lights without markers: a file that leaves its lights out need not have the pack
-/// that the markers would name.
+/// The demo's two lights without markers: a file that leaves out its lights need not have the color pack that the
+/// markers would refer to.
 fn default_lights() -> List<Light> {
     let light = |name: &str, x, y, z| Light {
         name: name.to_owned(),

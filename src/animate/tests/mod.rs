@@ -1,4 +1,5 @@
-//! Paths where naive ones fail: duplicates, reversals, uneven spacing, opposite directions, poles.
+//! Paths for which simple implementations fail: duplicate keys, reversals, uneven spacing, opposite directions,
+//! poles.
 
 mod takes;
 
@@ -39,7 +40,7 @@ fn stretched_keys(keys: &[Key<Camera>], seconds: f64) -> Vec<Key<Camera>> {
     stretched(&animation, seconds).keys
 }
 
-/// Times at even steps from the first key to the last.
+/// Returns times at equal steps from the first key to the last.
 fn times(path: &CameraPath, steps: u32) -> Vec<f64> {
     let (first, last) = (path.keys()[0].time, path.keys().last().expect("a key").time);
     let time = |n| first + (last - first) * f64::from(n) / f64::from(steps);
@@ -66,7 +67,7 @@ fn a_key_is_met_exactly() {
 #[test]
 fn nothing_overshoots() {
     for places in [
-        // 100 : 1 spacing in space, then in time, a reversal, and a rest.
+        // Spacing of 100 : 1 in space, then in time, a reversal, and a rest.
         vec![(0.0, 0.0), (1.0, 100.0), (2.0, 101.0), (3.0, 102.0)],
         vec![(0.0, 0.0), (10.0, 1.0), (10.1, 2.0), (10.2, 3.0)],
         vec![(0.0, 0.0), (1.0, 10.0), (2.0, 0.0), (3.0, 10.0)],
@@ -124,7 +125,7 @@ fn turns_take_the_shorter_way_at_an_even_pace() {
     };
     assert!((turn(179.0, -179.0) - 2.0).abs() < 1e-9);
     assert!((turn(-179.0, 179.0) - 2.0).abs() < 1e-9);
-    // Opposite directions, exactly and nearly.
+    // Exactly and nearly opposite directions.
     for off in [0.0, 1e-9, 1e-3] {
         assert!((turn(0.0, 180.0 - off) - (180.0 - off)).abs() < 1e-6);
     }
@@ -197,7 +198,7 @@ fn a_turntable_from_above_turns_the_picture_evenly() {
     let start = camera(target + DVec3::Y * 100.0, 10.0, -90.0);
     let keys = Preset::Turntable.keys(&start, target, 8.0);
     assert_eq!(keys[0].value, keys[4].value, "a round");
-    // A view that was tilted looks at the target all the same.
+    // A camera that was tilted at first still looks at the target.
     let tilted = camera(start.position, 10.0, -60.0);
     for (one, other) in Preset::Turntable
         .keys(&tilted, target, 8.0)
@@ -229,7 +230,7 @@ fn a_dolly_comes_nearer_in_both_projections() {
         };
         let keys = Preset::Dolly.keys(&start, target, 8.0);
         let ends = [&keys[0].value, &keys[keys.len() - 1].value];
-        // How large something at the target is in the picture.
+        // Size in the picture of an object at the target.
         let height = ends.map(|camera| {
             let framing = camera.framing().expect("a framing");
             let up = camera.basis().expect("a basis").y_axis;
@@ -253,7 +254,7 @@ fn a_table_of_a_spreadsheet_is_a_path() {
     ] {
         assert_eq!(keys(text).as_ref(), Ok(&plain), "{text}");
     }
-    // Its lines have no order of their own.
+    // The lines may be in any order.
     let sorted = keys("time,x,y,z,yaw\n1.25,-4,2,3,20\n0,1.5,2,3,10\n");
     assert_eq!(sorted.as_ref(), Ok(&plain));
     let error = keys("time,x,y,z\n1,1,2,3\n0,1,2,3\n1,4,2,3\n").expect_err("twice");
@@ -269,7 +270,7 @@ fn a_table_of_a_spreadsheet_is_a_path() {
 #[test]
 fn an_orbit_from_or_to_its_axis_turns_nowhere() {
     let around = DVec3::new(1.0, 2.0, 3.0);
-    // What is meant to be on the axis is so but for rounding.
+    // Positions on the axis may be off by rounding.
     for beside in [0.0, 1e-15] {
         let top = around + DVec3::new(beside, 5.0, -beside);
         for turn in 0..16 {
@@ -291,7 +292,7 @@ fn an_orbit_from_or_to_its_axis_turns_nowhere() {
 fn every_preset_starts_where_the_camera_is_and_looks_at_the_target() {
     let target = DVec3::new(1.0, 2.0, 3.0);
     for preset in Preset::ALL {
-        // From straight above there is no level direction to the target; it must still be a path.
+        // From straight above, there is no horizontal direction to the target; the path must still be valid.
         for place in [
             DVec3::new(30.0, 10.0, -4.0),
             target + DVec3::new(0.0, 5.0, 0.0),
@@ -309,7 +310,7 @@ fn every_preset_starts_where_the_camera_is_and_looks_at_the_target() {
             );
         }
     }
-    // The splines of the round ones do not wobble.
+    // The splines of the round paths do not oscillate.
     let start = camera(DVec3::new(50.0, 0.0, 0.0), 0.0, 0.0);
     let path = CameraPath::new(&Preset::Ellipse.keys(&start, DVec3::splat(0.0), 4.0));
     for time in times(&path, 500) {
@@ -383,7 +384,7 @@ fn any_keys() -> impl Strategy<Value = Vec<Key<Camera>>> {
     ];
     let gap = prop_oneof![Just(1e-6), 1e-6..1e-3_f64, 0.01..10.0_f64];
     let easing = (0..4_usize).prop_map(|n| Easing::ALL[n]);
-    // Half of the places are the first one again: duplicates and reversals are common.
+    // Half of the positions are that of the first key: duplicates and reversals are common.
     let one = (gap, place, any::<bool>(), yaw, pitch, way, easing);
     prop::collection::vec(one, 1..8).prop_map(|parts| {
         let mut time = 0.0;

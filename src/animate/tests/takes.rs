@@ -1,11 +1,11 @@
-//! Takes and their keys, timing, texts, and tracks.
+//! Takes and their keys, retiming, text formats, and tracks.
 
 use std::sync::Arc;
 
 use super::*;
 use crate::scene::{Animation, Document, MAX_SECONDS, Take, Target, Track, Value};
 
-/// A flight by hand: uneven times, pauses, a wobble.
+/// A hand-flown take: uneven times, pauses, a wobble.
 fn take() -> Take {
     let mut take = Take::default();
     let mut time: f64 = 0.0;
@@ -31,7 +31,7 @@ fn take() -> Take {
     take
 }
 
-/// The same flight with a head that sample n turns by so much more.
+/// The same flight, with the yaw of sample `n` increased by `by(n)`.
 fn turned(calm: &Take, by: impl Fn(usize) -> f64) -> Take {
     let mut take = Take::default();
     for (n, sample) in calm.samples.iter().enumerate() {
@@ -46,7 +46,7 @@ fn turned(calm: &Take, by: impl Fn(usize) -> f64) -> Take {
     take
 }
 
-/// To and fro from sample to sample.
+/// Alternates in sign from sample to sample.
 fn tremor(sample: usize, size: f64) -> f64 {
     if sample.is_multiple_of(2) {
         size
@@ -55,7 +55,7 @@ fn tremor(sample: usize, size: f64) -> f64 {
     }
 }
 
-/// What every sample sees: a grid of points 60 ahead.
+/// Returns what every sample sees: a grid of points at a distance of 60.
 fn seen(take: &Take) -> Vec<Vec<Landmark>> {
     let of = |sample: usize| {
         let camera = take.camera(sample).expect("a sample");
@@ -108,7 +108,7 @@ fn a_trembling_hand_costs_few_keys_where_the_tolerance_allows_it() {
     assert!(keys(8.0) < 20, "{} keys", keys(8.0));
 }
 
-/// A script moves the mouse, or a touchpad is touched anew: the view leaps from one sample to the next.
+/// The view leaps from one sample to the next, as when a script moves the mouse, or a touchpad is touched again.
 #[test]
 fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     let calm = take();
@@ -122,7 +122,7 @@ fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     assert!(found.worst.off * 1024.0 <= 6.0, "{:?}", found.worst);
     assert!(found.keys.len() < 40, "{} keys", found.keys.len());
     assert_eq!(simplify(&calm, &self::seen(&calm), 6.0 / 1024.0).jumps, 0);
-    // A key that is tapped turns the view for a few samples, between rests.
+    // Tapping a key turns the view for a few samples, between rests.
     let tapped = turned(&calm, |n| (n.clamp(20, 24) - 20) as f64 * 0.1);
     assert_eq!(
         simplify(&tapped, &self::seen(&tapped), 6.0 / 1024.0).jumps,
@@ -135,7 +135,7 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
     let mut take = Take::default();
     let mut x = 0.0;
     for n in 0..300_u32 {
-        // Starts and stops at once, as keys on a keyboard do.
+        // Starts and stops abruptly, as with keys on a keyboard.
         x += if n / 40 % 2 == 1 { 1.0 } else { 0.0 };
         let yaw = f64::from(n.clamp(100, 180)) * 0.01;
         let angles = Orientation {
@@ -160,7 +160,7 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
             worst,
             worst_off(&CameraPath::new(&keys), &take, &seen, ends_of(&keys))
         );
-        // In another time it is the same flight.
+        // Stretched in time, it is the same flight.
         let slower = CameraPath::new(&stretched_keys(&keys, 20.0));
         let off = worst_off(&slower, &take, &seen, ends_of(slower.keys())).off * 1024.0;
         assert!((off - worst.off * 1024.0).abs() < 0.05, "{off} stretched");
@@ -219,7 +219,7 @@ fn constant_speed_is_constant_and_takes_as_long() {
         let x = at(&even, time).position.x;
         assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
     }
-    // However it was paced.
+    // The easing does not matter.
     let mut paced = on_x(&[(0.0, 0.0), (2.0, 80.0)]).keys().to_vec();
     paced[0].easing = Easing::InOut;
     let even = CameraPath::new(&Retime::ConstantSpeed.apply(&paced));
@@ -227,7 +227,7 @@ fn constant_speed_is_constant_and_takes_as_long() {
         let x = at(&even, time).position.x;
         assert!((x - 40.0 * time).abs() < 0.5, "{x} at {time}");
     }
-    // Turns alone have a speed too.
+    // Rotations alone have a speed, too.
     let here = DVec3::splat(0.0);
     let turns = [(0.0, 0.0), (1.0, 90.0), (9.0, 100.0)];
     let key = |&(time, yaw): &(f64, f64)| Key::new(time, camera(here, yaw, 0.0));
@@ -242,7 +242,7 @@ fn pauses_are_trimmed_and_flights_stretched() {
     let trimmed = Retime::TrimPauses.apply(path.keys());
     let times: Vec<f64> = trimmed.iter().map(|key| key.time).collect();
     assert_eq!(times, [0.0, 1.0, 2.0]);
-    // A zoom is no pause, beside a way and alone.
+    // A zoom is not a pause, with or without movement.
     let mut zooms = path.keys().to_vec();
     for key in &mut zooms[2..] {
         key.value.projection_distance *= 2.0;

@@ -1,4 +1,4 @@
-//! Whether an animation means something.
+//! Validation of animations.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,7 @@ use crate::scene::shape::Shape;
 use crate::scene::target::Owners;
 use crate::scene::whole::Scene;
 
-/// Least time between two keys, in seconds: slopes between them are still numbers.
+/// Smallest time between two keys, in seconds: slopes between them are still finite.
 const MIN_GAP: f64 = 0.999_999e-6;
 
 pub fn check_animation(at: &At, scene: &Scene) -> Check {
@@ -71,12 +71,12 @@ fn check_keys<T>(at: &At, keys: &[Key<T>]) -> Check {
     Ok(())
 }
 
-/// Says that what a track moves is not there.
+/// Returns the message for a track whose target does not exist.
 fn no_owner(scene: &Scene, target: &Target) -> String {
     let objects = scene.objects.iter();
     let lights = scene.lights.iter().map(|light| &*light.name);
     match target {
-        // Every scene has one.
+        // Every scene has an ambient intensity.
         Target::AmbientIntensity => String::new(),
         Target::LightIntensity(name) | Target::LightPosition(name) => {
             no_such("light", name, lights)

@@ -1,14 +1,14 @@
-//! Whether a camera means something.
+//! Validation of cameras.
 
 use std::ops::RangeInclusive;
 
 use super::place::{At, Check};
 use crate::scene::camera::Camera;
 
-/// Projection distances (image heights) between which directions keep single-precision meaning.
+/// Valid projection distances, in image heights: beyond them, directions are too inaccurate in single precision.
 pub const PROJECTION_DISTANCES: RangeInclusive<f64> = 1e-3..=1e5;
 
-/// Refuses a camera that sees nothing.
+/// Rejects invalid cameras.
 pub fn check_camera(at: &At, camera: &Camera) -> Check {
     at.field("position").point(camera.position)?;
     at.field("look_at").direction(camera.look_at)?;
@@ -21,7 +21,7 @@ pub fn check_camera(at: &At, camera: &Camera) -> Check {
     check_lens(at, camera.projection_distance, camera.orthographic_height)
 }
 
-/// Refuses what would be seen of nothing, or of everything at once.
+/// Rejects projection distances and window heights out of range.
 pub fn check_lens(at: &At, projection_distance: f64, orthographic_height: f64) -> Check {
     at.field("projection_distance")
         .within(projection_distance, PROJECTION_DISTANCES)?;

@@ -1,5 +1,5 @@
-//! Whether a scene means something: the checks that a file passes before it is loaded and an edit
-//! before it is applied. Every refusal names the field, what it must be and what it is.
+//! Validation of scenes: the checks that a file passes before it is loaded, and an edit before it is applied. Every
+//! error names the field, what it must be and what it is.
 
 mod place;
 
@@ -23,27 +23,27 @@ use super::render::{MAX_REFLECTIONS, MAX_SIDE, Render};
 use super::shape::{Property, PropertyValue, Shape};
 use super::whole::{MAX_BYTES, Scene, VERSION};
 
-/// So many faces have room in a scene file, unless their points are written with hundreds of digits.
+/// Number of faces that always fits into a scene file, unless the points are written with hundreds of digits.
 const FACES_WITH_ROOM: usize = 1_000_000;
 
-/// Most pixels in a picture: 1 GiB of 8-bit RGBA.
+/// Largest number of pixels of a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// Refuses a scene that cannot be traced as it stands, naming the first problem in file order.
+/// Rejects a scene that cannot be traced as it is, with the first problem in file order.
 ///
 /// # Errors
-/// The [`Problem`], which a file turns into line and column.
+/// The [`Problem`], which can be located in a file by line and column.
 pub fn check(scene: &Scene) -> Result<(), Problem> {
     check_since(scene, None)
 }
 
-/// [`check`] for a scene that was made from a valid one: what the two share is not looked at again.
+/// Like [`check`], for a scene derived from a valid one: parts that both share are not checked again.
 ///
 /// # Errors
 /// The [`Problem`], as a sentence for the user.
 pub fn check_edit(scene: &Scene, valid: &Scene) -> Result<(), Problem> {
     check_since(scene, Some(valid))?;
-    // To measure them takes long, and most changes make no more.
+    // Measuring the length takes long, and most edits do not add triangles.
     let is_same = scene.objects.is_same(&valid.objects);
     if is_same || scene.own_faces() <= valid.own_faces().max(FACES_WITH_ROOM) {
         return Ok(());
@@ -152,14 +152,14 @@ fn check_object_names(at: &At, scene: &Scene) -> Check {
 }
 
 impl Scene {
-    /// Whether another scene has packs of the same names.
+    /// Returns whether another scene has color packs of the same names, in the same order.
     fn has_packs_of(&self, other: &Self) -> bool {
         self.color_packs.is_same(&other.color_packs)
             || self.color_packs.keys().eq(other.color_packs.keys())
     }
 
-    /// Whether what tracks can move is named alike, as far as that can be told without looking at all
-    /// of it.
+    /// Returns whether the objects and lights of another scene have the same names. May be `false` if the object
+    /// lists are divided into different chunks.
     fn names_are_those_of(&self, other: &Self) -> bool {
         let changes = other.objects.changes(&self.objects);
         let is_named_alike = |(index, object): (usize, &Object)| {

@@ -1,4 +1,4 @@
-//! A place in the scene, and the checks that values of the same kind share.
+//! Positions in a scene, and checks for common kinds of values.
 
 use std::ops::RangeInclusive;
 
@@ -9,32 +9,32 @@ use crate::scene::direction::unit;
 use crate::scene::locate::PathStep;
 use crate::scene::notation::format_number;
 
-/// Largest coordinate or length, in world units, and largest angle in degrees.
+/// Largest absolute coordinate or length, in world units, and largest absolute angle in degrees.
 pub const MAX_COORDINATE: f64 = FARTHEST;
 
-/// Largest factor that something is scaled by; the smallest is as far below 1.
+/// Largest scale factor; the smallest is its reciprocal.
 pub const MAX_FACTOR: f64 = 1e6;
 
-/// Why a scene is refused, and where in it.
+/// Why a scene is invalid, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The way from the scene to the offending value.
+    /// Path from the scene to the invalid value.
     pub path: Vec<PathStep>,
     /// What is wrong, as a sentence without its full stop.
     pub sentence: String,
 }
 
-/// What a check finds.
+/// The result of a check.
 pub type Check = Result<(), Problem>;
 
-/// A place in the scene, with the checks that values of the same kind share. The way to it is only
-/// written down when something is refused.
+/// A position in the scene, with checks for common kinds of values. The path to it is only built when a check
+/// fails.
 pub struct At<'a> {
     above: Option<&'a Self>,
     step: Place<'a>,
 }
 
-/// One step of the way.
+/// One step of a path.
 #[derive(Clone, Copy)]
 enum Place<'a> {
     Root,
@@ -59,17 +59,17 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A field of it.
+    /// A field of this value.
     pub fn field(&'a self, name: &'static str) -> Self {
         self.then(Place::Field(name))
     }
 
-    /// An item of it, from 0.
+    /// An item of this list, counted from 0.
     pub fn index(&'a self, index: usize) -> Self {
         self.then(Place::Index(index))
     }
 
-    /// The value of a key of it.
+    /// The value of a key of this map.
     pub fn key(&'a self, key: &'a str) -> Self {
         self.then(Place::Key(key))
     }
@@ -94,7 +94,7 @@ impl<'a> At<'a> {
         path
     }
 
-    /// Refuses it with a sentence without its full stop.
+    /// Returns a [`Problem`] at this position. The sentence has no full stop.
     pub fn refuse(&self, sentence: String) -> Check {
         Err(Problem {
             path: self.path(),
@@ -102,7 +102,7 @@ impl<'a> At<'a> {
         })
     }
 
-    /// Numbers, not infinite ones.
+    /// Checks that numbers are finite.
     pub fn finite(&self, values: &[f64]) -> Check {
         match values.iter().find(|value| !value.is_finite()) {
             Some(value) => self.refuse(format!("{} must be finite, found {value}", self.name())),
@@ -110,7 +110,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// Finite, and in a range.
+    /// Checks that a number is within a range.
     pub fn within(&self, value: f64, range: RangeInclusive<f64>) -> Check {
         self.finite(&[value])?;
         if range.contains(&value) {
@@ -126,7 +126,7 @@ impl<'a> At<'a> {
         ))
     }
 
-    /// A length.
+    /// Checks a length: positive and at most [`MAX_COORDINATE`].
     pub fn positive(&self, value: f64) -> Check {
         self.finite(&[value])?;
         if value > 0.0 && value <= MAX_COORDINATE {
@@ -144,12 +144,12 @@ impl<'a> At<'a> {
         ))
     }
 
-    /// A place in the world.
+    /// Checks a position in world units.
     pub fn point(&self, value: DVec3) -> Check {
         self.bounded(value, "must lie within 1e12 of the origin")
     }
 
-    /// Turns about three axes, in degrees.
+    /// Checks rotation angles in degrees about three axes.
     pub fn angles(&self, value: DVec3) -> Check {
         self.bounded(value, "must have angles of at most 1e12 degrees")
     }
@@ -164,14 +164,14 @@ impl<'a> At<'a> {
         self.refuse(format!("{} {words}, found {found}", self.name()))
     }
 
-    /// Factors, none of which makes anything flat.
+    /// Checks scale factors: no component may be close to zero.
     pub fn factors(&self, value: DVec3) -> Check {
         let is_factor = |factor: f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
         let words = "must have factors between 1e-6 and 1e6, or as much below 0";
         self.each(value, is_factor, words)
     }
 
-    /// Finite, and each part as it should be.
+    /// Checks that each component is finite and satisfies `is_good`.
     fn each(&self, value: DVec3, is_good: impl Fn(f64) -> bool, words: &str) -> Check {
         self.finite(&value.to_array())?;
         let mut parts = value.to_array().into_iter();
@@ -184,7 +184,7 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A direction of any length but zero that places have.
+    /// Checks a direction: it must not be zero, and its components are limited like coordinates.
     pub fn direction(&self, value: DVec3) -> Check {
         self.bounded(value, "must have parts of at most 1e12")?;
         match unit(value) {
@@ -196,17 +196,17 @@ impl<'a> At<'a> {
         }
     }
 
-    /// A colour, 0–255 per channel.
+    /// Checks a colour, 0–255 per channel.
     pub fn color(&self, value: DVec3) -> Check {
         let is_channel = |channel: f64| (0.0..=255.0).contains(&channel);
         self.each(value, is_channel, "must have channels between 0 and 255")
     }
 }
 
-/// Most names that a sentence lists.
+/// Largest number of names that a sentence lists.
 const MOST_NAMES: usize = 8;
 
-/// Says that nothing of a kind has a name, and which names there are.
+/// Returns the message that nothing of a kind has this name, with the names that exist.
 pub fn no_such<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let mut known = known.map(|name| format!("{name:?}"));
     let first: Vec<String> = known.by_ref().take(MOST_NAMES).collect();

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Those of the keys of the only track.
+/// Returns the times of the keys of the only track.
 fn times(animation: &Animation) -> Vec<f64> {
     let keys = animation.tracks[0].keys.iter();
     keys.map(|key| (key.time * 1e3).round() / 1e3).collect()
@@ -16,7 +16,7 @@ fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
     for time in [0.0, 1.0, 1.2, 1.4, 3.0] {
         animation = animation.with_value(&target, time, Value::Number(time / 10.0));
     }
-    // In slower pictures, three of them are within a quarter of a frame.
+    // At this low frame rate, three successive keys are less than a quarter of a frame apart.
     animation.frames_per_second = 1.0;
     let track = Some(0);
     let third = KeyPlace { track, index: 2 };
@@ -50,7 +50,7 @@ fn keys_of_the_camera_and_of_values_are_moved_and_paced_together() {
     let animation = animation.with_value(&target, 0.5, Value::Number(0.3));
     let animation = animation.with_value(&target, 4.0, Value::Number(0.4));
     let places: Keys = animation.places().into_iter().take(3).collect();
-    // None goes before the start, and all go as far.
+    // All keys move by the same amount, so that none is before the start.
     let (moved, new) = animation.with_moved(&places, -2.0, false);
     assert_eq!(new, places);
     let of_camera: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();

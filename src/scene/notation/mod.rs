@@ -1,4 +1,4 @@
-//! How values are written in the file.
+//! Representation of values in the scene file.
 
 pub mod number;
 
@@ -8,15 +8,15 @@ pub mod method;
 
 use glam::DVec3;
 
-/// Whether a value need not be written.
+/// Returns whether a value is the default, and so need not be written.
 pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// What has more digits before the point is written with an exponent, and so is what has more zeros behind it.
+/// Numbers of at least this size, or smaller than its reciprocal, are written with an exponent.
 const MOST_DIGITS: f64 = 1e17;
 
-/// The shortest text that reads back as `value`, without `.0` on whole numbers.
+/// Returns the shortest text that parses to `value`, without `.0` on whole numbers.
 pub fn format_number(value: f64) -> String {
     let size = value.abs();
     if size >= MOST_DIGITS || (size > 0.0 && size < MOST_DIGITS.recip()) {
@@ -26,7 +26,7 @@ pub fn format_number(value: f64) -> String {
     }
 }
 
-/// Reads `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if that is not three finite numbers.
+/// Parses `1, 2, 3`, `(1, 2, 3)` or `1 2 3`; `None` if the text is not three finite numbers.
 pub fn parse_vec3(text: &str) -> Option<DVec3> {
     let inner = text
         .trim()

@@ -1,4 +1,4 @@
-//! One number in its shortest form that reads back as the same bits: `175` rather than `175.0`.
+//! Serialization of numbers in the shortest form that reads back exactly: `175` rather than `175.0`.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -24,7 +24,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     f64::deserialize(deserializer)
 }
 
-/// A number that is written that way.
+/// A number that is serialized in this form.
 pub struct Shortest(pub f64);
 
 impl Serialize for Shortest {

@@ -1,4 +1,4 @@
-//! A vector as `(x, y, z)`.
+//! Serialization of vectors as `(x, y, z)`.
 
 use glam::DVec3;
 use serde::de::{Error, SeqAccess, Visitor};
@@ -21,7 +21,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3, 
     <[f64; 3]>::deserialize(deserializer).map(DVec3::from)
 }
 
-/// Reads three numbers, or one for all three.
+/// Reads three numbers, or a single one for all three components.
 pub fn one_or_three<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3, D::Error> {
     let read = deserializer.deserialize_any(NumberOrPoint("a number or three numbers"))?;
     Ok(match read {
@@ -30,16 +30,16 @@ pub fn one_or_three<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DVec3,
     })
 }
 
-/// One number or three: what a key of a track holds.
+/// A number or a vector: the value of a track's key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// For intensities.
+    /// An intensity.
     Number(f64),
-    /// For positions, in world units, and rotations, in degrees.
+    /// A position in world units, or a rotation in degrees.
     Point(DVec3),
 }
 
-/// Reads one number or three, which are called so.
+/// Deserializes a number or a vector. Holds the description of what is expected, for error messages.
 pub struct NumberOrPoint(pub &'static str);
 
 impl<'de> Visitor<'de> for NumberOrPoint {

@@ -1,21 +1,21 @@
-//! The angles by which meshes are turned.
+//! The rotation angles of meshes.
 
 use glam::{DQuat, DVec3, EulerRot};
 
-/// Most degrees of one of the steps in which a turn is followed. Of finer ones, one may end where two of the three angles
-/// turn about one axis, and which of them has turned is then anybody's guess.
+/// Largest step, in degrees, in which a rotation is tracked. Smaller steps could end in a gimbal lock, where two of
+/// the three angles turn about one axis and it is ambiguous which of them has changed.
 const STEP: f64 = 90.0;
-/// Most of those steps: who turns farther means no number of rounds.
+/// Largest number of such steps: for larger rotations, the number of full turns is not meaningful.
 const MOST_STEPS: f64 = 4000.0;
 
-/// The turn by degrees about x, then y, then z.
+/// Returns the rotation by these angles in degrees about x, then y, then z.
 pub fn orientation_of(angles: DVec3) -> DQuat {
     let [x, y, z] = angles.to_array().map(f64::to_radians);
     DQuat::from_euler(EulerRot::ZYX, z, y, x)
 }
 
-/// Degrees about x, then y, then z; of the two ways there are, each with any number of turns, the one nearer to
-/// those before.
+/// Returns the angles of a rotation in degrees about x, then y, then z. Of the two solutions, each with any number
+/// of full turns, it is the one nearer to `before`.
 pub fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
     let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
     let one = DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees());
@@ -32,7 +32,7 @@ pub fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
     DVec3::from(nearer.to_array().map(without_noise))
 }
 
-/// Those angles after a turn by so many degrees about an axis of length 1, however many rounds that is.
+/// Returns the angles after a further rotation, in degrees about a unit axis, including its full turns.
 pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
     let steps = (degrees.abs() / STEP).ceil().clamp(1.0, MOST_STEPS) as u32;
     let start = orientation_of(angles);
@@ -43,7 +43,7 @@ pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
     })
 }
 
-/// An angle of few digits as it was meant: -50, and not -50.00000000000001.
+/// Removes rounding noise from an angle with few digits: -50.00000000000001 becomes -50.
 fn without_noise(degrees: f64) -> f64 {
     let round = (degrees * 1e9).round() / 1e9;
     if (round - degrees).abs() < 1e-12 {
@@ -70,7 +70,7 @@ mod tests {
             (lying - DVec3::new(90.0, 360.0, 0.0)).length() < 1e-9,
             "{lying}"
         );
-        // About an axis of its own it goes the way of its turn, whatever that is in angles.
+        // About an oblique axis, only the resulting orientation is predictable, not the angles.
         let angles = DVec3::new(12.0, 20.0, -40.0);
         let axis = DVec3::new(0.6, 0.0, -0.8);
         let expected = DQuat::from_axis_angle(axis, 4.0) * orientation_of(angles);

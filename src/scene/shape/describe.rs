@@ -1,4 +1,4 @@
-//! What every kind of primitive tells about itself.
+//! The trait that every kind of shape implements.
 
 use std::fmt::Debug;
 
@@ -6,90 +6,91 @@ use glam::{DQuat, DVec3};
 
 use super::plane_piece::PlanePiece;
 
-/// What every kind of primitive tells about itself.
+/// The common interface of all kinds of shapes.
 pub trait Describe: Clone + Debug + PartialEq + Sized {
-    /// The name of the kind, as the file writes it.
+    /// The name of the kind, as written in the file.
     const KIND: &'static str;
 
-    /// One of this kind, `size` world units large around `at`: what *Add* offers.
+    /// Returns an example, `size` world units large around `at`, for the *Add* menu.
     fn example(at: DVec3, size: f64) -> Self;
 
-    /// Shows every property to `visit`, in the order of the file.
+    /// Calls `visit` with each property, in file order.
     fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>));
 
-    /// What is wrong with the properties together, as a sentence without its full stop; each by itself
-    /// is valid.
+    /// Checks the combination of properties, each of which is valid by itself. Returns what is wrong as a sentence
+    /// without its full stop.
     fn problem(&self) -> Option<String> {
         None
     }
 
-    /// Smallest and largest corner of the box around it; `None` for what never ends.
+    /// Returns the lowest and highest corner of the bounding box; `None` for unbounded shapes.
     fn bounds(&self) -> Option<(DVec3, DVec3)>;
 
-    /// Where it is: what moves with it, and stays when it is turned or scaled.
+    /// The reference point: it moves with the shape, and stays in place when the shape is turned or scaled about
+    /// it.
     fn position(&self) -> DVec3;
 
-    /// The same, moved.
+    /// Returns the shape moved by a vector.
     #[must_use]
     fn moved(&self, by: DVec3) -> Self;
 
-    /// The same, turned about a point.
+    /// Returns the shape turned about a point.
     #[must_use]
     fn turned(&self, about: DVec3, by: DQuat) -> Self;
 
-    /// The same, so many times (> 0) as large and as far from a point.
+    /// Returns the shape scaled about a point by a factor > 0.
     #[must_use]
     fn scaled(&self, about: DVec3, by: f64) -> Self;
 
-    /// A point of it and its smallest measure in world units; `None` for what has none.
+    /// Returns a point of the shape and its smallest dimension, in world units; `None` for unbounded shapes.
     fn feature(&self) -> Option<(DVec3, f64)>;
 
-    /// How far a point is from its surface, in radii of curvature of that surface; infinity for
-    /// what is flat.
+    /// Returns the distance of a point from the surface, in radii of curvature of that surface; infinity for flat
+    /// shapes and meshes.
     fn height_per_radius(&self, _point: DVec3) -> f64 {
         f64::INFINITY
     }
 
-    /// The piece of a plane that it is; `None` for what is not flat.
+    /// Returns the shape as a piece of a plane; `None` if it is not flat.
     fn plane_piece(&self) -> Option<PlanePiece> {
         None
     }
 }
 
-/// Where a point is when it is turned about another one.
+/// Rotates a point about another one.
 pub fn turned(point: DVec3, about: DVec3, by: DQuat) -> DVec3 {
     about + by * (point - about)
 }
 
-/// Where a point is when it is so many times as far from another one.
+/// Scales the offset of a point from another one.
 pub fn scaled(point: DVec3, about: DVec3, by: f64) -> DVec3 {
     about + (point - about) * by
 }
 
-/// One property of a primitive.
+/// A property of a shape.
 #[derive(Debug)]
 pub struct Property<'a> {
-    /// What the file and the inspector call it.
+    /// Name in the file and the inspector.
     pub name: &'static str,
-    /// What it means, in a sentence without its full stop.
+    /// Explanation, as a sentence without its full stop.
     pub hint: &'static str,
-    /// Its value.
+    /// Mutable reference to the value.
     pub value: PropertyValue<'a>,
 }
 
-/// What a property can be.
+/// A mutable reference to the value of a property, by type.
 #[derive(Debug)]
 pub enum PropertyValue<'a> {
-    /// A place in world units.
+    /// A position in world units.
     Point(&'a mut DVec3),
     /// A direction; any length but zero.
     Direction(&'a mut DVec3),
     /// A length in world units, > 0.
     Length(&'a mut f64),
-    /// Degrees about x, y and z.
+    /// Rotation in degrees about x, y and z.
     Angles(&'a mut DVec3),
-    /// Degrees, 0–180.
+    /// An angle in degrees, 0–180.
     Angle(&'a mut f64),
-    /// Factors along x, y and z; none is 0.
+    /// Scale factors along x, y and z; none is 0.
     Factors(&'a mut DVec3),
 }

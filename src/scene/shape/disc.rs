@@ -1,4 +1,4 @@
-//! The flat disc: a floor or a mirror that ends.
+//! The disc: a bounded floor or mirror.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -12,13 +12,13 @@ use crate::scene::notation;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
-    /// Its middle.
+    /// Centre in world units.
     #[serde(with = "notation::vector")]
     pub center: DVec3,
-    /// Across it; any length but zero.
+    /// Normal vector; any length but zero.
     #[serde(with = "notation::vector")]
     pub normal: DVec3,
-    /// > 0.
+    /// Radius in world units, > 0.
     #[serde(with = "notation::number")]
     pub radius: f64,
 }
@@ -52,7 +52,7 @@ impl Describe for Disc {
         });
     }
 
-    /// Along an axis it reaches as far as the sine of the angle between axis and normal lets it.
+    /// The extent along an axis is the radius times the sine of the angle between axis and normal.
     fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let normal = unit(self.normal).unwrap_or(DVec3::ZERO);
         let sines = (DVec3::ONE - normal * normal).max(DVec3::ZERO);

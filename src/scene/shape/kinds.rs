@@ -1,4 +1,4 @@
-//! The list of all kinds.
+//! The list of all kinds of shapes.
 
 use std::fmt::{self, Formatter};
 use std::marker::PhantomData;
@@ -16,11 +16,11 @@ use super::plane_piece::{Outline, PlanePiece};
 use super::sphere::Sphere;
 use super::triangle::Triangle;
 
-/// Reads a shape. A variant that holds a struct would have parentheses within parentheses in the file;
-/// the extension of RON that unwraps them refuses an explicit `Some`.
+/// Deserializes a shape. With derived newtype variants, the file would need nested parentheses; the RON extension
+/// that unwraps them rejects an explicit `Some`.
 struct AnyShape;
 
-/// Reads the fields of a variant as those of a struct.
+/// Deserializes the fields of a variant as those of a struct.
 struct Fields<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for Fields<T> {
@@ -37,7 +37,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for Fields<T> {
 
 macro_rules! shapes {
     ($($kind:ident: $article:literal),*) => {
-        /// A primitive: all numbers in world units.
+        /// A primitive shape. All lengths are in world units.
         #[derive(Clone, Debug, PartialEq, Serialize)]
         pub enum Shape {
             $(#[doc = $article] $kind($kind)),*
@@ -76,37 +76,37 @@ macro_rules! shapes {
         }
 
         impl Shape {
-            /// One shape of every kind, of the given size around `at`: what *Add* offers.
+            /// Returns one example of each kind, of the given size around `at`, for the *Add* menu.
             pub fn examples(at: DVec3, size: f64) -> Vec<Self> {
                 vec![$(Self::$kind($kind::example(at, size))),*]
             }
 
-            /// The name of the kind, as the file writes it.
+            /// The name of the kind, as written in the file.
             pub fn kind(&self) -> &'static str {
                 match self { $(Self::$kind(_) => $kind::KIND),* }
             }
 
-            /// Shows every property to `visit`, in the order of the file.
+            /// Calls `visit` with each property, in file order.
             pub fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
                 match self { $(Self::$kind(shape) => shape.fields(visit)),* }
             }
 
-            /// What is wrong with the properties together, see [`Describe::problem`].
+            /// Checks the combination of properties, see [`Describe::problem`].
             pub fn problem(&self) -> Option<String> {
                 match self { $(Self::$kind(shape) => shape.problem()),* }
             }
 
-            /// Smallest and largest corner of the box around it; `None` for what never ends.
+            /// Returns the lowest and highest corner of the bounding box; `None` for unbounded shapes.
             pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
                 match self { $(Self::$kind(shape) => shape.bounds()),* }
             }
 
-            /// Where it is, see [`Describe::position`].
+            /// The reference point, see [`Describe::position`].
             pub fn position(&self) -> DVec3 {
                 match self { $(Self::$kind(shape) => shape.position()),* }
             }
 
-            /// The middle of one that ends, or where it is.
+            /// The centre of the bounding box; for unbounded shapes, the position.
             pub fn middle(&self) -> DVec3 {
                 match self.bounds() {
                     Some((low, high)) => low * 0.5 + high * 0.5,
@@ -114,8 +114,8 @@ macro_rules! shapes {
                 }
             }
 
-            /// What one is turned about, and grows from: of a mesh its position, if that is in the box around it; of
-            /// all else the middle.
+            /// The point about which the shape is turned and scaled: for a mesh its position, if that is within its
+            /// bounding box; in all other cases the middle.
             pub fn pivot(&self) -> DVec3 {
                 let position = self.position();
                 let is_within = |(low, high): (DVec3, DVec3)| {
@@ -127,13 +127,13 @@ macro_rules! shapes {
                 }
             }
 
-            /// The same shape, moved.
+            /// Returns the shape moved by a vector.
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.moved(by))),* }
             }
 
-            /// Its points, in the order of the file.
+            /// Returns the values of the point properties, in file order.
             pub fn points(&self) -> Vec<DVec3> {
                 let mut points = Vec::new();
                 self.clone().fields(&mut |field| {
@@ -144,7 +144,7 @@ macro_rules! shapes {
                 points
             }
 
-            /// The same shape in another place: one that has a single point has it there to the last digit.
+            /// Returns the shape moved so that its position is `place`; exactly so for shapes with a single point.
             #[must_use]
             pub fn placed(&self, place: DVec3) -> Self {
                 let mut placed = self.moved(place - self.position());
@@ -160,19 +160,19 @@ macro_rules! shapes {
                 placed
             }
 
-            /// The same shape, turned about a point.
+            /// Returns the shape turned about a point.
             #[must_use]
             pub fn turned(&self, about: DVec3, by: DQuat) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.turned(about, by))),* }
             }
 
-            /// The same shape, so many times (> 0) as large and as far from a point.
+            /// Returns the shape scaled about a point by a factor > 0.
             #[must_use]
             pub fn scaled(&self, about: DVec3, by: f64) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.scaled(about, by))),* }
             }
 
-            /// A point of it and its smallest measure, see [`Describe::feature`].
+            /// Returns a point and the smallest dimension of the shape, see [`Describe::feature`].
             pub fn feature(&self) -> Option<(DVec3, f64)> {
                 match self { $(Self::$kind(shape) => shape.feature()),* }
             }
@@ -182,12 +182,12 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => shape.height_per_radius(point)),* }
             }
 
-            /// The piece of a plane that it is, see [`Describe::plane_piece`].
+            /// Returns the shape as a piece of a plane, see [`Describe::plane_piece`].
             pub fn plane_piece(&self) -> Option<PlanePiece> {
                 match self { $(Self::$kind(shape) => shape.plane_piece()),* }
             }
 
-            /// The point and the normal of the plane that it fills, if it is an endless one.
+            /// Returns a point and the normal of an infinite plane; `None` for all other shapes.
             pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
                 let flat = self.plane_piece().filter(|flat| flat.outline == Outline::Endless)?;
                 Some((flat.point, flat.normal))
@@ -250,7 +250,7 @@ mod tests {
         };
         assert_eq!(mesh.position, shape.position());
         assert_eq!(mesh.rotation, DVec3::new(0.0, 20.0, 0.0));
-        // Far from its triangles, it is no point to turn them about.
+        // The position is not the pivot if it is far from the triangles.
         let away = shape.moved(DVec3::X);
         let Shape::Mesh(mut mesh) = away else {
             panic!("a mesh")

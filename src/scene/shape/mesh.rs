@@ -1,4 +1,4 @@
-//! Many triangles as one thing: written in the scene file, or in a file of their own.
+//! Triangle meshes, either written in the scene file or in a file of their own.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,22 +14,23 @@ use super::plane_piece::PlanePiece;
 use crate::mesh::{FARTHEST, Triangles, icosphere};
 use crate::scene::notation;
 
-/// Triangles that are moved, turned and scaled as one.
+/// A triangle mesh, which is moved, turned and scaled as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// The triangles, as they are before they are scaled, turned and moved.
+    /// The triangles in local coordinates: before scale, rotation and position are applied.
     pub source: MeshSource,
-    /// Where their origin is.
+    /// Position of the local origin in world units.
     pub position: DVec3,
-    /// Degrees about x, then y, then z.
+    /// Rotation in degrees about x, then y, then z.
     pub rotation: DVec3,
-    /// Factors along x, y and z, before the rotation; none is 0.
+    /// Scale factors along x, y and z, applied before the rotation; none is 0.
     pub scale: DVec3,
-    /// Degrees between faces below which they are shaded as one curved surface, at most 180; 0 for none.
+    /// Angle in degrees between faces below which they are shaded as one curved surface, at most 180; 0 for flat
+    /// shading.
     pub smooth: f64,
 }
 
-/// A mesh as the file has it.
+/// The serialized form of a mesh.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Mesh", deny_unknown_fields)]
 struct MeshText {
@@ -61,12 +62,12 @@ struct MeshText {
     smooth: f64,
 }
 
-/// A point of a mesh as the file has it.
+/// The serialized form of a mesh point.
 #[derive(Serialize, Deserialize)]
 #[serde(transparent)]
 struct Point(#[serde(with = "notation::vector")] DVec3);
 
-/// One factor, or three.
+/// Scale factors, serialized as a single number if all three are equal.
 #[derive(Clone, Copy, PartialEq)]
 struct Scale(DVec3);
 
@@ -145,7 +146,7 @@ impl<'de> Deserialize<'de> for Mesh {
 }
 
 impl Mesh {
-    /// Triangles where they are.
+    /// Creates a mesh whose local coordinates are world coordinates, inline in the scene.
     pub fn of(triangles: Triangles) -> Self {
         Self {
             source: MeshSource::Inline(Arc::new(triangles)),
@@ -156,16 +157,16 @@ impl Mesh {
         }
     }
 
-    /// The same with its position in the middle of its triangles, by which it is then turned. For a mesh
-    /// that is neither turned nor scaled.
+    /// Returns the same geometry with `position` at the middle of its triangles, so that it is turned about it. The
+    /// mesh must be neither turned nor scaled.
     #[must_use]
     pub fn centred(self) -> Self {
         let triangles = self.source.triangles();
         let Some((low, high)) = triangles.bounds() else {
             return self;
         };
-        // Whole numbers keep the coordinates of the corners what they are; where those would be far from its
-        // middle, binary fractions change them the least.
+        // Shifting by whole numbers leaves the digits of the coordinates unchanged. For small meshes these are too
+        // coarse, and binary fractions change the coordinates least.
         let size = (high - low).max_element();
         let step = (size / 8.0).log2().floor().exp2().min(1.0);
         let step = if step > 0.0 { step } else { 1.0 };
@@ -181,11 +182,11 @@ impl Mesh {
         }
     }
 
-    /// Reads the triangles of a file that it refers to, see [`MeshSource::load`]. What is wrong is kept with
-    /// the reference, and the mesh is empty.
+    /// Reads the triangles of the mesh file, if the mesh refers to one, see [`MeshSource::load`]. On failure, the
+    /// problem is stored with the reference and the mesh is empty.
     pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
         self.source.load(folder, files);
-        // Only now is it known how far they reach.
+        // The extent is known only now.
         let too_far = self.problem();
         if let MeshSource::File {
             path,
@@ -199,7 +200,7 @@ impl Mesh {
         }
     }
 
-    /// Scale and rotation.
+    /// The linear part of [`Self::transform`]: scale, then rotation.
     pub fn turn(&self) -> DMat3 {
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
         DMat3::from_rotation_z(z)
@@ -208,12 +209,13 @@ impl Mesh {
             * DMat3::from_diagonal(self.scale)
     }
 
-    /// Rotation.
+    /// The rotation as a quaternion.
     pub fn orientation(&self) -> DQuat {
         orientation_of(self.rotation)
     }
 
-    /// Turned about a point, by so many degrees about an axis of length 1: its angles count the rounds.
+    /// Returns the mesh turned about a point, by an angle in degrees about a unit axis. Its rotation angles keep
+    /// count of full turns.
     #[must_use]
     pub fn turned_by(&self, about: DVec3, (axis, degrees): (DVec3, f64)) -> Self {
         let by = DQuat::from_axis_angle(axis, degrees.to_radians());
@@ -223,7 +225,7 @@ impl Mesh {
         }
     }
 
-    /// From the triangles' own coordinates to the world's.
+    /// The transform from local to world coordinates.
     pub fn transform(&self) -> DAffine3 {
         DAffine3 {
             matrix3: self.turn(),
@@ -231,14 +233,14 @@ impl Mesh {
         }
     }
 
-    /// The corners of each face where they are in the world.
+    /// Returns the corners of each face in world coordinates.
     pub fn world_corners(&self) -> impl Iterator<Item = [DVec3; 3]> {
         let transform = self.transform();
         let corners = self.source.triangles().corners();
         corners.map(move |corners| corners.map(|corner| transform.transform_point3(corner)))
     }
 
-    /// Its faces in the world; those without an area are none.
+    /// Returns the faces in world coordinates, without those that have no area.
     pub fn pieces(&self) -> impl Iterator<Item = PlanePiece> {
         self.world_corners().filter_map(PlanePiece::between)
     }
@@ -283,7 +285,7 @@ impl Describe for Mesh {
         (farthest > FARTHEST).then(|| "the mesh must lie within 1e12 of the origin".to_owned())
     }
 
-    /// The turned box around the triangles: no smaller than they are.
+    /// Returns the bounds of the transformed local bounding box, which may be larger than those of the triangles.
     fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let (low, high) = self.source.triangles().bounds()?;
         let transform = self.transform();
@@ -330,7 +332,8 @@ impl Describe for Mesh {
         }
     }
 
-    /// A mesh as a whole: that a triangle of it is small hurts nothing, its neighbours are moved with it.
+    /// Describes the mesh as a whole: the size of single triangles does not matter, since their neighbours are
+    /// displaced along with them.
     fn feature(&self) -> Option<(DVec3, f64)> {
         let (low, high) = self.bounds()?;
         Some((low * 0.5 + high * 0.5, (high - low).length()))
@@ -349,7 +352,7 @@ mod tests {
             scale: DVec3::new(1.0, 2.0, 3.0),
             ..Mesh::example(DVec3::ZERO, 1.0)
         };
-        // y: twice as long, turned to z about x, then to x about y.
+        // The y axis becomes twice as long, then turns to z about x, then to x about y.
         let turned = mesh.transform().transform_point3(DVec3::Y);
         assert!(
             (turned - DVec3::new(2.0, 0.0, 7.0)).length() < 1e-12,
@@ -378,7 +381,7 @@ mod tests {
         assert!((found - expected).length() < 1e-12, "{found} {expected}");
     }
 
-    /// A mesh that is not read yet.
+    /// Returns a mesh whose file is not read yet.
     fn of_file(path: &str) -> Mesh {
         Mesh {
             source: MeshSource::unread(path.to_owned()),

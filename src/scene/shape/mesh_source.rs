@@ -1,4 +1,4 @@
-//! Where the triangles of a mesh come from.
+//! Sources of the triangles of meshes.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -7,22 +7,22 @@ use std::sync::Arc;
 use crate::files::{Marks, stays_inside, with_separators};
 use crate::mesh::{Triangles, marks_of_mesh, read_triangles};
 
-/// Where the triangles of a mesh come from.
+/// The source of the triangles of a mesh.
 #[derive(Clone, Debug)]
 pub enum MeshSource {
-    /// The scene file.
+    /// Triangles written in the scene file.
     Inline(Arc<Triangles>),
-    /// A file of their own.
+    /// Triangles in a file of their own.
     File {
-        /// Its path from the folder of the scene file.
+        /// Path relative to the folder of the scene file.
         path: String,
-        /// That folder, once it is known.
+        /// The folder of the scene file, once it is known.
         folder: Option<PathBuf>,
-        /// What was read.
+        /// The triangles read from the file.
         triangles: Arc<Triangles>,
-        /// Why nothing was read, as a sentence without its full stop.
+        /// Why the file could not be read, as a sentence without its full stop.
         problem: Option<String>,
-        /// Those of the file just before it was read.
+        /// Modification time and length of the file just before it was read.
         marks: Option<Marks>,
     },
 }
@@ -48,13 +48,13 @@ impl PartialEq for MeshSource {
     }
 }
 
-/// Files that the meshes of one scene refer to, and what was read of them, by their paths.
+/// Results of reading the mesh files of a scene, by path.
 pub type MeshFiles = HashMap<String, Result<Arc<Triangles>, String>>;
 
 impl MeshSource {
-    /// Reads the triangles of a file that it refers to, which lies in `folder` or a folder in it; nothing
-    /// is read outside, because a scene may come from a stranger. What is wrong is kept with the reference.
-    /// What is in `files` is not read again, and what is read is added to it.
+    /// Reads the triangles of the file, if the source is one. It must be in `folder` or a folder below: nothing
+    /// outside is read, because the scene may come from an untrusted source. On failure, the problem is stored with
+    /// the reference. Files in `files` are not read again; what is read is added there.
     pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
         let Self::File {
             path,
@@ -69,7 +69,7 @@ impl MeshSource {
         if let Some(folder) = folder {
             *path = with_separators(folder, path);
         }
-        // What is not read is not looked at either.
+        // The metadata of files outside the folder is not read either.
         let allowed = folder.filter(|folder| stays_inside(folder, Path::new(path)));
         *own_folder = allowed.map(Path::to_owned);
         *marks = allowed.and_then(|folder| marks_of_mesh(&folder.join(&path)));
@@ -94,7 +94,7 @@ impl MeshSource {
         }
     }
 
-    /// Why the file that it refers to could not be read.
+    /// Why the file could not be read, if it could not.
     pub fn problem(&self) -> Option<&str> {
         match self {
             Self::Inline(_) => None,
@@ -102,13 +102,13 @@ impl MeshSource {
         }
     }
 
-    /// The folder and the path in it of a file that was read.
+    /// Returns folder and relative path of a file that was read.
     pub fn file(&self) -> Option<(&Path, &str)> {
         self.reference().filter(|_| self.problem().is_none())
     }
 
-    /// The folder and the path in it of the file that it refers to, whether that could be read or not; `None` as well
-    /// where it may not be.
+    /// Returns folder and relative path of the file, whether it could be read or not; `None` also if it is outside
+    /// the folder.
     pub fn reference(&self) -> Option<(&Path, &str)> {
         match self {
             Self::File {
@@ -120,7 +120,7 @@ impl MeshSource {
         }
     }
 
-    /// Those of its file, just before that was read.
+    /// Modification time and length of the file just before it was read.
     pub fn marks(&self) -> Option<Marks> {
         match self {
             Self::Inline(_) => None,
@@ -128,7 +128,7 @@ impl MeshSource {
         }
     }
 
-    /// A file that is not read yet.
+    /// Creates a reference to a file that is not read yet.
     pub fn unread(path: String) -> Self {
         Self::File {
             path,
@@ -139,14 +139,15 @@ impl MeshSource {
         }
     }
 
-    /// What a file holds by now.
+    /// Reads a file in its current state.
     pub fn read_anew(folder: &Path, path: String) -> Self {
         let mut source = Self::unread(path);
         source.load(Some(folder), &mut MeshFiles::new());
         source
     }
 
-    /// The same with its triangles; `None` where it has them itself, or they could not be read.
+    /// Returns the triangles of a file as an inline source; `None` if the source is inline already, or could not be
+    /// read.
     pub fn taken_in(&self) -> Option<Self> {
         match self {
             Self::File {
@@ -158,12 +159,12 @@ impl MeshSource {
         }
     }
 
-    /// A stand-in that is written in few words and is another one for other triangles.
+    /// Returns a short stand-in for comparing scenes: it is different for different triangles.
     pub fn abridged(&self) -> Self {
         Self::unread(self.triangles().fingerprint().to_string())
     }
 
-    /// The triangles; none where a file could not be read.
+    /// The triangles; empty if the file could not be read.
     pub fn triangles(&self) -> &Arc<Triangles> {
         match self {
             Self::Inline(triangles) | Self::File { triangles, .. } => triangles,

@@ -1,7 +1,7 @@
-//! The primitives as the file describes them: one file each.
+//! The primitive shapes of the scene file, one module each.
 //!
-//! A new one is a file here that implements [`Describe`] and a line in the list in `kinds.rs`; a file
-//! and a line in [`crate::primitive`], which has the kernels; and a symbol in the window's `icons.rs`.
+//! A new shape needs a file here that implements [`Describe`] and a line in the list in `kinds.rs`; a file and a
+//! line in [`crate::primitive`], which has the kernels; and a symbol in the user interface's `icons.rs`.
 
 mod plane_piece;
 

@@ -1,4 +1,4 @@
-//! The endless plane.
+//! The infinite plane.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -8,14 +8,14 @@ use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
 
-/// An endless plane.
+/// An infinite plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {
     /// Any point on it.
     #[serde(with = "notation::vector")]
     pub point: DVec3,
-    /// Across it; any length but zero.
+    /// Normal vector; any length but zero.
     #[serde(with = "notation::vector")]
     pub normal: DVec3,
 }

@@ -1,45 +1,46 @@
-//! Pieces of planes: what lies in them, and which of them lie in each other.
+//! Pieces of planes: which points are on them, and which of them coincide.
 
 use glam::DVec3;
 
 /// A piece of a plane, in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanePiece {
-    /// A point of the plane.
+    /// A point of the plane; for a disc, its centre.
     pub point: DVec3,
-    /// The unit vector across it.
+    /// The unit normal.
     pub normal: DVec3,
-    /// How far it reaches.
+    /// The shape of the piece within the plane.
     pub outline: Outline,
 }
 
-/// How far a piece of a plane reaches.
+/// The shape of a piece of a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outline {
-    /// All of the plane.
+    /// The whole plane.
     Endless,
-    /// What is between these corners.
+    /// The triangle with these corners.
     Triangle([DVec3; 3]),
-    /// So far from [`PlanePiece::point`].
+    /// The disc of this radius around [`PlanePiece::point`].
     Disc(f64),
 }
 
-/// Share of the coordinates within which a point counts as on a plane: what their own rounding may have
-/// moved it by.
+/// Largest distance from a plane, as a share of the coordinates, of a point that counts as on it: how far rounding
+/// of the coordinates may have moved it.
 const ON_PLANE: f64 = 1e-12;
 
-/// The sine of an angle from a normal below which a direction counts as along it.
+/// Sine of the angle to a normal below which a direction counts as parallel to it.
 const ALONG_NORMAL: f64 = 1e-12;
 
-/// Share of the coordinates within which two surfaces count as one: what single precision cannot tell apart.
+/// Distance, as a share of the coordinates, below which two surfaces count as one: single precision cannot tell
+/// them apart.
 const IN_PLANE: f64 = 4.0 / (1 << 24) as f64;
 
-/// Share of its size by which a piece must reach over the border of another one to lie in it: neighbours
+/// Share of the smaller size by which two pieces must reach across each other's borders to overlap: neighbours
 /// share their borders.
 const OVER_BORDER: f64 = 1e-6;
 
 impl PlanePiece {
-    /// What is between three corners; none if that has no area.
+    /// Returns the triangle between three corners; `None` if it has no area.
     pub fn between(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         Some(Self {
@@ -49,8 +50,8 @@ impl PlanePiece {
         })
     }
 
-    /// Above zero on the side that the normal points to, below it on the other, zero on the plane, all within
-    /// rounding; in world units.
+    /// Returns the signed distance from the plane, in world units: positive on the side of the normal, and exactly
+    /// zero within rounding.
     pub fn height(&self, point: DVec3) -> f64 {
         let height = self.normal.dot(point - self.point);
         let rounding = ON_PLANE * (point.abs().max_element() + self.point.abs().max_element());
@@ -61,7 +62,7 @@ impl PlanePiece {
         }
     }
 
-    /// How far a point is from its border, in world units; infinity for what is endless.
+    /// Returns the distance of a point from the border, in world units; infinity for a whole plane.
     pub fn distance_of_border(&self, point: DVec3) -> f64 {
         match self.outline {
             Outline::Endless => f64::INFINITY,
@@ -86,20 +87,21 @@ impl PlanePiece {
         }
     }
 
-    /// Whether a unit direction is across it.
+    /// Returns whether a unit direction is perpendicular to the plane.
     pub fn is_across(&self, direction: DVec3) -> bool {
         direction.cross(self.normal).length() <= ALONG_NORMAL
     }
 
-    /// How far a point may be from the plane and count as on it, if the farthest of its like has coordinates up to
-    /// `farthest` from `centre`; in world units.
+    /// Returns the largest distance from the plane, in world units, at which points count as on it, if their
+    /// coordinates relative to `centre` are at most `farthest`.
     pub fn height_in(&self, centre: DVec3, farthest: f64) -> f64 {
         IN_PLANE * farthest.max((self.point - centre).abs().max_element())
     }
 
-    /// Whether both fill some area of the same plane; coordinates count from `centre`.
+    /// Returns whether both cover some common area of the same plane. Rounding is estimated from coordinates
+    /// relative to `centre`.
     pub fn coincides(&self, other: &Self, centre: DVec3) -> bool {
-        // The normal of the larger one is the more certain.
+        // The normal of the larger piece is more accurate.
         let (small, large) = if self.size() < other.size() {
             (self, other)
         } else {
@@ -111,14 +113,15 @@ impl PlanePiece {
         small.lies_over(large, IN_PLANE * farthest)
     }
 
-    /// Whether some of it is in front of or behind a piece that is no smaller, and all of it within so much of that one's
-    /// plane; in world units.
+    /// Returns whether all of this piece is within `height` world units of the plane of `large`, which is no
+    /// smaller, and part of it is in front of or behind `large`.
     fn lies_over(&self, large: &Self, height: f64) -> bool {
         let is_in = |point: &DVec3| large.normal.dot(*point - large.point).abs() <= height;
         self.points().iter().all(is_in) && self.overlaps(large, large.normal)
     }
 
-    /// Whether one of them is that close to the other all over, and they lie over each other; in world units.
+    /// Returns whether all of the smaller piece is within `height` world units of the plane of the larger one, and
+    /// they overlap.
     pub fn is_beside(&self, other: &Self, height: f64) -> bool {
         if self.size() < other.size() {
             self.lies_over(other, height)
@@ -127,7 +130,7 @@ impl PlanePiece {
         }
     }
 
-    /// Infinity for what is endless.
+    /// A measure of size for comparing pieces; infinity for a whole plane.
     fn size(&self) -> f64 {
         match self.outline {
             Outline::Endless => f64::INFINITY,
@@ -136,7 +139,7 @@ impl PlanePiece {
         }
     }
 
-    /// Three points that are not in a line; those of an endless one are one unit apart.
+    /// Returns three points that are not collinear; those of a whole plane are one unit apart.
     fn points(&self) -> [DVec3; 3] {
         let radius = match self.outline {
             Outline::Triangle(corners) => return corners,
@@ -147,8 +150,9 @@ impl PlanePiece {
         [DVec3::ZERO, across, along].map(|way| self.point + way * radius)
     }
 
-    /// Whether two pieces of the same plane have an area in common: no line in it separates them. Such a line
-    /// lies along an edge, or across the way from a disc to the nearest point of the other.
+    /// Returns whether two pieces of the same plane share an area: no line in the plane separates them. A
+    /// separating line is parallel to an edge, or perpendicular to the line from a disc's centre to the nearest
+    /// point of the other.
     fn overlaps(&self, other: &Self, normal: DVec3) -> bool {
         let border = OVER_BORDER * self.size().min(other.size());
         let ways = self.ways(other, normal).chain(other.ways(self, normal));
@@ -159,7 +163,7 @@ impl PlanePiece {
         })
     }
 
-    /// Across lines that may separate it from another piece.
+    /// Returns the normals of lines that may separate this piece from another one; their lengths are arbitrary.
     fn ways(&self, other: &Self, normal: DVec3) -> impl Iterator<Item = DVec3> {
         let ways = match (self.outline, other.outline) {
             (Outline::Endless, _) => [DVec3::ZERO; 3],
@@ -174,7 +178,7 @@ impl PlanePiece {
         ways.into_iter()
     }
 
-    /// From where to where it reaches along a unit direction in its plane.
+    /// Returns the interval that the piece covers along a unit direction in its plane.
     fn interval(&self, way: DVec3) -> (f64, f64) {
         match self.outline {
             Outline::Endless => (f64::NEG_INFINITY, f64::INFINITY),

@@ -1,4 +1,4 @@
-//! The ball.
+//! The sphere.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -6,42 +6,42 @@ use serde::{Deserialize, Serialize};
 use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use crate::scene::notation;
 
-/// A ball.
+/// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
-    /// Its middle.
+    /// Centre in world units.
     #[serde(with = "notation::vector")]
     pub center: DVec3,
-    /// > 0.
+    /// Radius in world units, > 0.
     #[serde(with = "notation::number")]
     pub radius: f64,
 }
 
-/// The numbers of balls that are one differ by less than this, as a share of the largest: what moving or scaling there
-/// and back leaves.
+/// Largest gap between spheres that count as identical, as a share of their size (radius plus largest coordinate):
+/// the rounding left by moving or scaling there and back.
 const SAME: f64 = 64.0 * f64::EPSILON;
-/// A direction in which the places of balls that stand in rows differ all the same.
+/// A direction along which the positions of spheres in regular rows differ.
 const ASKEW: DVec3 = DVec3::new(0.791_287_3, 0.529_103_7, 0.306_419_1);
 
 impl Sphere {
-    /// Whether both are one ball but for the last digits of their numbers: rounding would decide which is seen.
+    /// Returns whether both spheres are identical up to rounding, so that rounding would decide which is seen.
     pub fn is_same(&self, other: &Self) -> bool {
         let size = |ball: &Self| ball.radius + ball.center.abs().max_element();
         self.gap(other) <= SAME * size(self).max(size(other))
     }
 
-    /// How far the surfaces of two balls are apart at most, in world units, if one is nearly the other.
+    /// Returns an upper bound on the distance between the surfaces of two nearly identical spheres, in world units.
     pub fn gap(&self, other: &Self) -> f64 {
         self.center.distance(other.center) + (self.radius - other.radius).abs()
     }
 
-    /// The place of its middle along a line: what is near is near there too. In world units.
+    /// The projection of the centre on a fixed direction, in world units: nearby spheres have nearby values.
     pub fn along(&self) -> f64 {
         self.center.dot(ASKEW)
     }
 
-    /// How much farther along that line a ball can be that is the same.
+    /// The largest difference of [`Self::along`] between this sphere and an identical one.
     pub fn room(&self) -> f64 {
         2.0 * SAME * (self.radius + self.center.abs().max_element())
     }

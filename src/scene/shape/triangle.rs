@@ -1,4 +1,4 @@
-//! The flat triangle.
+//! The triangle.
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
 
-/// Smallest ratio of a triangle's height to its longest side; below it rounding decides what is hit.
+/// Smallest valid ratio of a triangle's height to its longest side; below it, rounding decides what is hit.
 const MIN_RATIO: f64 = 1e-9;
 
 /// A flat triangle, its corners clockwise seen from outside.
@@ -27,12 +27,12 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The corners in their order.
+    /// The corners in order.
     pub fn corners(&self) -> [DVec3; 3] {
         [self.a, self.b, self.c]
     }
 
-    /// The longest side, and twice the area.
+    /// Returns the length of the longest side and twice the area.
     fn measures(&self) -> (f64, f64) {
         let Self { a, b, c } = *self;
         let longest = (b - a).length().max((c - a).length()).max((c - b).length());
