@@ -40,7 +40,7 @@ impl CliError {
         Self::Failed(error.into())
     }
 
-    /// A trace was stopped, although nothing stops one here.
+    /// The failure of a trace that ended without a picture, although nothing stops one here.
     pub fn no_picture() -> Self {
         Self::failed("the trace ended without a picture")
     }

@@ -65,7 +65,7 @@ pub struct Cost {
 /// Draws a scene with another engine, one sample per pixel; returns the milliseconds that took, or why it failed.
 pub type Engine = fn(&Scene) -> Result<f64, String>;
 
-/// Who makes a picture.
+/// The engine that makes a picture.
 #[derive(Clone, Copy, Debug)]
 enum Maker {
     Glint(Sampling),

@@ -96,7 +96,7 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
     };
     let mut bytes = limits::read_mesh_bytes(path)?;
     let marked = bytes.len() - text::without_mark(&bytes).len();
-    // The header of a binary STL file may begin with any bytes, so a byte order mark is removed from text only.
+    // Only text: the header of a binary STL file may hold any bytes, also those of a byte order mark.
     if format != MeshFormat::Stl || stl::is_text(&bytes[marked..]) {
         bytes.drain(..marked);
     }

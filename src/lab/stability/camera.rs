@@ -67,7 +67,7 @@ fn by_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
     Some(angles.apply(&Camera::default()).basis()?.x_axis)
 }
 
-/// u = up × w with the world's up, in single precision: what a first program does.
+/// u = up × w with the world's up, in single precision: as in a typical first program.
 fn by_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
     let (yaw, pitch) = (yaw as f32, pitch as f32);
     let look = Vec3::new(
