@@ -1,4 +1,4 @@
-//! Files that are the old one or the new one, whole: what every room writes with.
+//! Atomic writing of files, and other file operations that all modules share.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
@@ -7,15 +7,15 @@ use std::time::SystemTime;
 
 use tempfile::NamedTempFile;
 
-/// How the names of unfinished files begin, and no others.
+/// Prefix of the names of unfinished files, and of no others.
 pub const UNFINISHED: &str = ".glint-unfinished-";
 
-/// Writes `bytes` to `path` so that a reader finds either the old file or the new one, whole: they
-/// go to a new file beside it, to the disk, and then under the name. Links are followed and the
-/// permissions of an existing file kept. What killed programs have left beside it goes.
+/// Writes `bytes` to `path` so that readers find either the whole old file or the whole new one: through a temporary
+/// file in the same folder, which is flushed to disk and renamed. Symbolic links are followed, and the permissions of
+/// an existing file are kept. Also removes what killed processes have left in the folder.
 ///
 /// # Errors
-/// Whatever the system answers; the file at `path` is then untouched.
+/// Any error of the system; the file at `path` is then unchanged.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = NewFile::beside(path)?;
     remove_leftovers(&beside.folder);
@@ -23,8 +23,8 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
     beside.place_durably()
 }
 
-/// Whether a path that a file in a folder names leads to that folder, or to one within it, links followed: nothing is
-/// read elsewhere, because the file may come from a stranger.
+/// Returns whether a path that a file in `folder` names stays within that folder, with symbolic links followed.
+/// Nothing else is read, because the file may come from a stranger.
 pub fn stays_inside(folder: &Path, path: &Path) -> bool {
     let mut depth = 0;
     let is_within = path.components().all(|part| {
@@ -45,17 +45,17 @@ pub fn stays_inside(folder: &Path, path: &Path) -> bool {
         let folder = folder.canonicalize();
         folder.is_ok_and(|folder| real.starts_with(folder))
     };
-    // What is not there, nobody reads.
+    // A path that does not exist is harmless.
     is_within && folder.join(path).canonicalize().map_or(true, leads_there)
 }
 
-/// More backups of a file than anybody wants.
+/// Most backups of one file.
 const MOST_BACKUPS: u32 = 1000;
 
-/// Copies a file to `NAME.bak`, or to `NAME.bak2` and so on where that holds something else: that path.
+/// Copies a file to `NAME.bak`, or to `NAME.bak2` and so on if that has other contents; returns the path.
 ///
 /// # Errors
-/// Whatever the system answers.
+/// Any error of the system.
 pub fn back_up(path: &Path) -> io::Result<PathBuf> {
     let bytes = fs::read(path)?;
     for number in 1..MOST_BACKUPS {
@@ -71,7 +71,7 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
                 write_atomic(&backup, &bytes)?;
                 return Ok(backup);
             }
-            // Another backup, or something of that name that is no file.
+            // Another backup, or something of that name that is not a file.
             Ok(_) => {}
             Err(_) if backup.exists() => {}
             Err(error) => return Err(error),
@@ -80,8 +80,8 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("there are too many backups of it already"))
 }
 
-/// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to
-/// that, it is removed; [`remove_leftovers`] does so where the program was killed.
+/// A temporary file beside the file that it will replace. No other process writes to it. Dropping it removes it;
+/// [`remove_leftovers`] removes it if the process was killed.
 #[derive(Debug)]
 pub struct NewFile {
     file: NamedTempFile,
@@ -90,16 +90,16 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// A new file for `path`. Links are followed, and the permissions of an existing file kept.
+    /// Creates a temporary file for `path`. Symbolic links are followed, and the permissions of an existing file are
+    /// kept.
     ///
     /// # Errors
-    /// Whatever the system answers, and where there is no folder for it, or something else of its name or a file that is
-    /// only to be read.
+    /// Any error of the system; also if the folder does not exist, if `path` is not a file, or if it is read-only.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let target = behind_links(path)?;
         let existing = match fs::metadata(&target) {
             Ok(existing) => Some(existing),
-            // Said of a name that is too long, before anything is made for it.
+            // An invalid name, such as one that is too long, is reported before anything is created for it.
             Err(error) if error.kind() == io::ErrorKind::InvalidFilename => return Err(error),
             Err(_) => None,
         };
@@ -108,7 +108,7 @@ impl NewFile {
             if !existing.is_file() {
                 return refused("there is something of that name that is not a file");
             }
-            // It could be replaced all the same: that asks its folder only.
+            // Renaming over a read-only file would work: that needs permission for its folder only.
             if existing.permissions().readonly() {
                 return refused("the file of that name may not be written to");
             }
@@ -133,12 +133,13 @@ impl NewFile {
         })
     }
 
-    /// Where it is until it is placed; it ends as the other file does.
+    /// Path of the temporary file. It has the extension of the target.
     pub fn path(&self) -> &Path {
         self.file.path()
     }
 
-    /// Where another program is to write it, which some systems allow with no file that is locked.
+    /// The path, for another program to write to. On Windows this unlocks the file, because others cannot write to
+    /// it.
     pub fn lend(&self) -> &Path {
         if cfg!(windows) {
             let _ = self.as_file().unlock();
@@ -146,21 +147,21 @@ impl NewFile {
         self.path()
     }
 
-    /// The file itself.
+    /// The open file.
     pub fn as_file(&self) -> &File {
         self.file.as_file()
     }
 
-    /// Puts it in its place.
+    /// Renames it to its target.
     ///
     /// # Errors
-    /// Whatever the system answers; what was there is then untouched.
+    /// Any error of the system; the target is then unchanged.
     pub fn place(self) -> io::Result<()> {
         let placed = self.file.persist(&self.target);
         placed.map(|_| ()).map_err(|error| error.error)
     }
 
-    /// The same, so that it survives a power cut.
+    /// Renames it to its target, so that the file survives a power failure.
     ///
     /// # Errors
     /// As [`Self::place`].
@@ -168,13 +169,13 @@ impl NewFile {
         self.as_file().sync_all()?;
         let folder = self.folder.clone();
         self.place()?;
-        // Where folders cannot be synced, it is the system's business.
+        // If the system cannot sync folders, there is no more to be done.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         Ok(())
     }
 }
 
-/// Removes the files from a folder that killed programs have left there unfinished.
+/// Removes unfinished files that killed processes have left in a folder.
 pub fn remove_leftovers(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else {
         return;
@@ -185,7 +186,7 @@ pub fn remove_leftovers(folder: &Path) {
         if !is_new_file {
             continue;
         }
-        // Whoever writes to it has locked it.
+        // A process that still writes to the file holds its lock.
         if let Ok(file) = open_file(&entry.path())
             && file.try_lock().is_ok()
         {
@@ -194,10 +195,10 @@ pub fn remove_leftovers(folder: &Path) {
     }
 }
 
-/// Makes a folder, and those that it is in.
+/// Creates a folder and its parent folders.
 ///
 /// # Errors
-/// What the system answered.
+/// Any error of the system.
 pub fn make_folder(path: &Path) -> io::Result<()> {
     let target = behind_links(path)?;
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_dir()) {
@@ -205,14 +206,14 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
             "there is something of that name that is not a folder",
         ));
     }
-    // No folder is made whose name is a dot.
+    // Without dots in the path: no folder can be created under such a name.
     fs::create_dir_all(target.components().collect::<PathBuf>())
 }
 
-/// Opens a file to be read. Asked before: a pipe would wait for somebody who writes into it.
+/// Opens a file for reading. Checks first that it is one: opening a pipe would wait for a writer.
 ///
 /// # Errors
-/// What the system answered, and where something of that name is no file.
+/// Any error of the system, and if `path` is not a file.
 pub fn open_file(path: &Path) -> io::Result<File> {
     if !fs::metadata(path)?.is_file() {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -221,7 +222,7 @@ pub fn open_file(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// What a file holds.
+/// Reads a file whole.
 ///
 /// # Errors
 /// See [`open_file`].
@@ -231,10 +232,10 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What an open file or pipe holds, or how much there is if that is more than `most` bytes.
+/// Reads an open file or pipe; the inner error is its length if that exceeds `most` bytes.
 ///
 /// # Errors
-/// What the system answered; no memory for it.
+/// Any error of the system, and if there is not enough memory.
 pub fn read_at_most(file: File, most: u64) -> io::Result<Result<Vec<u8>, u64>> {
     let length = file.metadata()?.len();
     if length > most {
@@ -243,12 +244,12 @@ pub fn read_at_most(file: File, most: u64) -> io::Result<Result<Vec<u8>, u64>> {
     let mut bytes = Vec::new();
     let size = usize::try_from(length).unwrap_or(usize::MAX);
     bytes.try_reserve_exact(size.saturating_add(1))?;
-    // The file may grow while it is read, and a pipe has no length.
+    // The file may grow while it is read, and the length of a pipe is unknown.
     let read = file.take(most + 1).read_to_end(&mut bytes)? as u64;
     Ok(if read > most { Err(read) } else { Ok(bytes) })
 }
 
-/// Removes files from a folder, those that were written first, until no more than `most` are left.
+/// Removes the oldest files of a folder until at most `most` are left.
 pub fn remove_oldest(folder: &Path, most: usize) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(SystemTime, PathBuf)> = entries
@@ -261,45 +262,45 @@ pub fn remove_oldest(folder: &Path, most: usize) {
     }
 }
 
-/// When a file was written last, where the system tells.
+/// Time of the last modification of a file, if the system tells it.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
     marks_of(path).map(|(time, _)| time)
 }
 
-/// When a file was written last, and how long it is: another one has others, mostly.
+/// Modification time and length of a file, which usually differ once it has changed.
 pub type Marks = (SystemTime, u64);
 
-/// Those of a file; `None` where the system does not say.
+/// The marks of a file; `None` if the system does not tell.
 pub fn marks_of(path: &Path) -> Option<Marks> {
     let about = fs::metadata(path).ok()?;
     Some((about.modified().ok()?, about.len()))
 }
 
-/// The path that means the same file wherever the program works next; itself where that is nowhere.
+/// Makes a path absolute, so that it stays valid when the working directory changes; unchanged if that fails.
 pub fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Whether two paths are those of one file, links followed.
+/// Returns whether two paths refer to the same file, with symbolic links followed.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let found = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     one == other || found(one) == found(other)
 }
 
-/// Whether the name of a file ends so, in capitals or not.
+/// Returns whether a file name has this extension, in upper or lower case.
 pub fn has_ending(path: &Path, ending: &str) -> bool {
     let own = path.extension();
     own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
-/// Whether the system says that there is nothing at a path: what is out of reach may be there.
+/// Returns whether the system says that nothing exists at a path. A path that cannot be accessed may exist.
 pub fn is_missing(path: &Path) -> bool {
     let found = fs::metadata(path);
     found.is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
 }
 
-/// A path below a folder as it is written here: on Windows it may have been written with separators that mean nothing
-/// elsewhere.
+/// Rewrites a path in `folder` with the separators of this system: one that was written on Windows may have
+/// backslashes.
 pub fn with_separators(folder: &Path, path: &str) -> String {
     if path.contains('\\') && is_missing(&folder.join(path)) {
         path.replace('\\', "/")
@@ -308,7 +309,7 @@ pub fn with_separators(folder: &Path, path: &str) -> String {
     }
 }
 
-/// What a file held when it was read or written last.
+/// Identifies the contents of a file when it was last read or written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stamp {
     hash: blake3::Hash,
@@ -317,7 +318,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Of a file that holds these bytes, and was written at that time at the earliest.
+    /// The stamp of a file with these contents that was written no earlier than at that time.
     pub fn of(bytes: &[u8], modified: Option<SystemTime>) -> Self {
         Self {
             hash: blake3::hash(bytes),
@@ -326,13 +327,13 @@ impl Stamp {
         }
     }
 
-    /// Of a file as it is now; `None` if it cannot be read.
+    /// The stamp of a file as it is now; `None` if it cannot be read.
     pub fn read(path: &Path) -> Option<Self> {
         let modified = time_of(path);
         read_file(path).ok().map(|bytes| Self::of(&bytes, modified))
     }
 
-    /// Of a file that had this hash, as [`Self::hash`] gives it: as it is now, if it holds the same still.
+    /// The stamp of a file that had this [`Self::hash`], with its time and length if its contents are the same now.
     pub fn of_hash(hash: &str, path: &Path) -> Option<Self> {
         let hash = blake3::Hash::from_hex(hash).ok()?;
         let now = Self::read(path).filter(|now| now.hash == hash);
@@ -343,12 +344,12 @@ impl Stamp {
         }))
     }
 
-    /// What tells what the file held, in letters.
+    /// The hash of the contents, in hexadecimal.
     pub fn hash(&self) -> String {
         self.hash.to_hex().to_string()
     }
 
-    /// Whether the file may hold something else by now, by its length and time.
+    /// Returns whether the file may have changed, by its length and modification time.
     pub fn is_touched(&self, path: &Path) -> bool {
         let metadata = fs::metadata(path).ok();
         metadata.is_some_and(|metadata| {
@@ -356,16 +357,17 @@ impl Stamp {
         })
     }
 
-    /// Whether the file holds something else by now. One that is gone holds nothing that could be lost.
+    /// Returns whether the contents of the file have changed. A file that no longer exists has nothing that could be
+    /// lost.
     pub fn is_outdated(&self, path: &Path) -> bool {
         read_file(path).is_ok_and(|bytes| blake3::hash(&bytes) != self.hash)
     }
 }
 
-/// The file that a path means, links followed, whether or not it exists yet.
+/// Follows symbolic links to the file that a path refers to, whether or not it exists yet.
 fn behind_links(path: &Path) -> io::Result<PathBuf> {
     let mut target = path.to_owned();
-    // A system follows no more than 40 links either.
+    // Systems follow no more than 40 links either.
     for _ in 0..40 {
         let Ok(next) = fs::read_link(&target) else {
             return Ok(target);
@@ -375,11 +377,12 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("it is a link that leads back to itself"))
 }
 
-/// A new file that is locked. Until it is, another program may take it for one that was left, and remove it.
+/// Creates a temporary file and locks it. Until it is locked, another process may take it for a leftover and remove
+/// it.
 fn locked_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
     loop {
         let file = new_file_in(folder, target)?;
-        // Where files cannot be locked, what a killed program leaves stays.
+        // If files cannot be locked, leftovers of killed processes stay.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
             return Ok(file);
@@ -388,7 +391,7 @@ fn locked_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
 }
 
 fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
-    // Encoders know the format by the ending.
+    // Encoders derive the format from the extension.
     let ending = target.extension().unwrap_or_default().to_string_lossy();
     let ending = format!(".{ending}");
     let mut builder = tempfile::Builder::new();
@@ -401,7 +404,7 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder).map_err(|error| {
         let error = without_path(error);
         match error.kind() {
-            // Of a file that may be written to, nobody would look for the reason there.
+            // The existing file may be writable, so the message says that the folder is the reason.
             kind @ io::ErrorKind::PermissionDenied => {
                 io::Error::new(kind, format!("its folder may not be written to: {error}"))
             }
@@ -410,7 +413,7 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
     })
 }
 
-/// Why a temporary file could not be made, without its path at the end, which nobody has asked for.
+/// Strips the path, which means nothing to users, from the end of an error about a temporary file.
 pub fn without_path(error: io::Error) -> io::Error {
     let words = error.to_string();
     match words.split_once(" at path ") {

@@ -12,22 +12,21 @@
 //!  files, mesh  primitive, simd ─┘
 //! ```
 //!
-//! The modules stand in the order of their dependence, in this file and in the `mod.rs` of every room: a
-//! file imports from those above its own, and `ui` and `cli` never meet. A test reads the order and keeps
-//! it. Geometry is spoken in `glam`; only kernels compute with vectors of the processor ([`simd`]).
+//! The modules are listed in the order of their dependencies, here and in every `mod.rs`: a file imports only from
+//! modules above its own, and `ui` and `cli` never import each other. A test checks this order. Geometry uses `glam`;
+//! only kernels compute with SIMD vectors ([`simd`]).
 //!
-//! A primitive is its description in [`scene`] (what the file and the inspector show) and its kernels in
-//! [`primitive`] (how rays meet it), with a line in the list of each, and a symbol in `ui/icons.rs`.
+//! A primitive consists of its description in [`scene`] (what the file and the inspector show) and its kernels in
+//! [`primitive`] (how rays hit it), with a line in the list of each, and a symbol in `ui/icons.rs`.
 //!
-//! A slider is dragged: its panel clones the object, the widgets change the clone, and the panel
-//! pushes an [`editor::Action`]. When all panels are drawn, [`editor::Editor::apply`] checks what the new
-//! scene does not share with the old one, notes the old one in the history (one drag is one step) and
-//! raises the revision. The [`worker::Worker`] gets the scene in its mailbox, where it replaces any that
-//! waits. A render thread makes a [`plan::Plan`], the [`trace::Tracer`] traces tiles into an
-//! [`image::Image`], coarse first, and each finished picture wakes the window. A picture of an older
-//! revision is never shown over a newer one.
+//! What happens when a slider is dragged: the panel clones the object, the widgets change the clone, and the panel
+//! pushes an [`editor::Action`]. After all panels are drawn, [`editor::Editor::apply`] checks what the new scene does
+//! not share with the old one, records the old one in the history (a drag is one undo step) and increments the
+//! revision. The [`worker::Worker`] receives the scene in its mailbox, where it replaces any that is waiting. A
+//! render thread makes a [`plan::Plan`], the [`trace::Tracer`] traces tiles into an [`image::Image`], coarse first,
+//! and each finished picture wakes the window. A picture of an older revision never replaces a newer one.
 
-// The blank lines keep the formatter from sorting what is in order of dependence.
+// The blank lines keep rustfmt from sorting the modules, which are in the order of their dependencies.
 
 pub mod words;
 

@@ -1,10 +1,10 @@
-//! What the system tells of the machine, and of this program on it.
+//! What the operating system tells about the machine and this process.
 
 use std::path::Path;
 
 use crate::files::read_file;
 
-/// The processor's name, where the system tells it.
+/// Name of the processor, if the system tells it.
 pub fn processor() -> String {
     let told = told_in("/proc/cpuinfo").unwrap_or_default();
     let line = told.lines().find(|line| line.starts_with("model name"));
@@ -13,7 +13,7 @@ pub fn processor() -> String {
     name.replace("(R)", "").replace("(TM)", "")
 }
 
-/// How much memory this program has in use, where the system tells.
+/// Resident memory of this process in bytes, if the system tells it.
 pub fn resident_bytes() -> Option<u64> {
     let told = told_in("/proc/self/status")?;
     let line = told.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

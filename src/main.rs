@@ -1,4 +1,4 @@
-//! Glint's program: the command line, or else the window.
+//! The `glint` binary: runs the command line, or else opens the window.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,11 +27,11 @@ fn main() -> ExitCode {
     cli::finish(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
 }
 
-/// Opens the window for one picture, and says what that has cost.
+/// Opens the window until its first picture is there, and prints the time and the memory that took.
 fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<(), CliError> {
     let asked = scene.clone();
     let stats = ui::time_start(scene, since).map_err(CliError::failed)?;
-    // What the window said about a file went with it. To read it before would take time.
+    // Messages about the file were lost with the window. Reading it earlier would have taken time.
     if let Some(path) = asked {
         Document::load(&path)?;
     }
@@ -45,7 +45,7 @@ fn save(image: Image, path: &Path) -> Result<(), CliError> {
     save_image(&Film::Levels(image), path).map_err(CliError::from)
 }
 
-/// Opens the window, or explains why there is none and traces a picture instead.
+/// Opens the window. If there is none, explains why and traces a picture instead.
 fn open_editor(
     scene: Option<&Path>,
     screenshot: Option<PathBuf>,

@@ -1,22 +1,22 @@
-//! Words for people.
+//! Formatting of numbers, names and quotations in messages.
 
 use std::borrow::Cow;
 use std::fmt::Display;
 
-/// A number and what it counts: `1 frame`, `3 frames`.
+/// A number with the name of what it counts: `1 frame`, `3 frames`.
 pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, one: &str) -> String {
     let s = if number == N::from(1) { "" } else { "s" };
     format!("{number} {one}{s}")
 }
 
-/// A word with a large first letter.
+/// A word with its first letter in upper case.
 pub fn capitalised(word: &str) -> String {
     let mut letters = word.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string());
     first.unwrap_or_default() + letters.as_str()
 }
 
-/// A number with a decimal, or with two digits where it is small.
+/// A number with one decimal, or with two significant digits if it is between 0 and 1.
 pub fn short_number(value: f64) -> String {
     let digits = if value > 0.0 && value < 1.0 {
         (1.0 - value.log10().floor()).clamp(1.0, 9.0) as usize
@@ -26,10 +26,10 @@ pub fn short_number(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// Most values that a message names.
+/// Most names that a message lists.
 const MOST_NAMES: usize = 3;
 
-/// The first few of some names, and how many more there are; `None` if there are none.
+/// The first few names, and how many more there are; `None` if there are none.
 pub fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
     let first: Vec<String> = names.by_ref().take(MOST_NAMES).collect();
     let more = match names.count() {
@@ -39,20 +39,20 @@ pub fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
     (!first.is_empty()).then(|| format!("{}{more}", first.join(", ")))
 }
 
-/// Letters of somebody's text that a sentence has room for.
+/// Most characters of a text that a message quotes.
 const QUOTED: usize = 40;
 
-/// What somebody wrote, in quotation marks, as far as it is short.
+/// A text in quotation marks, shortened if it is long.
 pub fn quoted(text: &str) -> String {
     format!("“{}”", shortened(text, QUOTED))
 }
 
-/// A word as a shell needs it. No path has a zero byte in it, which is all that cannot be quoted.
+/// A word quoted for a shell. Only words with a zero byte cannot be quoted, and no path contains one.
 pub fn for_shell(word: &str) -> String {
     shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
-/// The first line of a text, so many letters of it at most.
+/// The first line of a text, cut to at most `most` characters; `…` marks what is left out.
 pub fn shortened(text: &str, most: usize) -> String {
     let text = text.trim();
     let line = text.lines().next().unwrap_or_default();

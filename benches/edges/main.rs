@@ -1,6 +1,6 @@
-//! What clean edges cost where they are hard: `cargo bench --bench edges`. For each scene the time of a picture with one
-//! sample a pixel, that of clean edges and how far they are off, and the time in which a plain grid of samples is as
-//! right. On one thread; compare columns of one row.
+//! Cost of clean edges in scenes where they are difficult: `cargo bench --bench edges`. For each scene, the table has
+//! the time of a picture with one sample per pixel, the time and error of clean edges, and the time in which a plain
+//! grid of samples reaches the same error. Runs on one thread; compare columns within one row.
 
 #![allow(
     clippy::expect_used,
@@ -20,14 +20,14 @@ use glint::trace::{Rays, RenderControl, Threads, Tracer};
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 256;
-/// Samples along the sides of a pixel of what counts as the truth.
+/// Samples along each side of a pixel in the picture that counts as the truth.
 const TRUTH: u32 = 24;
-/// The same of the grids that clean edges are held against.
+/// Samples along each side of a pixel in the grids that clean edges are compared with.
 const GRIDS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 11, 16];
-/// The best of so many runs counts.
+/// Number of runs, of which the fastest counts.
 const RUNS: u32 = 3;
 
-/// One way of sampling a scene.
+/// Measurements of one sampling of a scene.
 struct Measured {
     milliseconds: f64,
     pixels: Vec<LinearRgb>,
@@ -96,8 +96,8 @@ fn print_row(name: &str, scene: &Scene) {
     );
 }
 
-/// In what time a grid is no farther off than this, on straight lines between those that were measured (error, ms) on a
-/// chart with logarithmic axes; `None` where none is.
+/// Time in which a grid reaches this error, interpolated linearly between the measured (error, ms) on logarithmic
+/// axes; `None` if no grid does.
 fn time_of_equal(grids: &[(f64, f64)], rmse: f64) -> Option<f64> {
     let enough = grids.iter().position(|(error, _)| *error <= rmse)?;
     let (error, time) = grids[enough];

@@ -1,4 +1,4 @@
-//! Scenes whose edges are hard to find, or to bound.
+//! Scenes whose edges are hard to find, or whose error is hard to bound.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -7,7 +7,7 @@ use glam::DVec3;
 use glint::mesh::Triangles;
 use glint::scene::{Document, Light, Mesh, Object, Scene, Shape, Sphere, Triangle};
 
-/// All of them, by name.
+/// All scenes, by name.
 pub fn scenes() -> Vec<(&'static str, Scene)> {
     vec![
         ("demo", Scene::demo()),
@@ -30,7 +30,7 @@ fn published(name: &str) -> Scene {
     Document::load(&path).expect("a scene").scene
 }
 
-/// The demo's floor and lights alone, seen up to the horizon.
+/// Only the floor and the lights of the demo, seen up to the horizon.
 fn floor() -> Scene {
     let mut scene = Scene::demo();
     scene.objects = scene
@@ -44,8 +44,8 @@ fn floor() -> Scene {
     scene
 }
 
-/// A number from 0 to 1 for each index: multiples of the golden ratio and of others like it (Roberts, "The unreasonable
-/// effectiveness of quasirandom sequences", 2018).
+/// A number from 0 to 1 for each index and axis, from a sequence that generalises multiples of the golden ratio
+/// (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
 fn spread(index: u32, axis: i32) -> f64 {
     (f64::from(index) * 1.220_744_084_605_759_5_f64.powi(-axis)).fract()
 }
@@ -73,7 +73,7 @@ fn balls(count: u32, are_mirrors: bool) -> Scene {
     scene
 }
 
-/// A ball with bumps: so many quads down, and around.
+/// A ball with bumps, of `down` by `around` quads.
 fn bumpy(down: u32, around: u32) -> Scene {
     let mut scene = floor();
     let place = |index: u32| {

@@ -1,7 +1,7 @@
-//! How soon an edit is seen, and what it costs the window's thread: `cargo bench --bench editor`.
+//! How soon an edit is visible, and what it costs the UI thread: `cargo bench --bench editor`.
 //!
-//! Everything runs without a display: the render thread is the real one, the window is driven headlessly and
-//! its shapes are cut into triangles as for a graphics card.
+//! Everything runs without a display: the render thread is the real one; the window is driven headlessly, and its
+//! shapes are tessellated as for a graphics card.
 
 #![allow(
     clippy::expect_used,
@@ -38,7 +38,7 @@ const SIDE: u32 = 1024;
 /// Size of the window when it is first opened.
 const OPENED: Vec2 = vec2(1280.0, 800.0);
 
-/// What `published` has to be held against: the same picture without the render thread.
+/// Reference for `published`: the same picture without the render thread.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn plain_frame(bencher: Bencher) {
     let threads = Threads::new(None).expect("threads");
@@ -52,13 +52,13 @@ fn plain_frame(bencher: Bencher) {
     });
 }
 
-/// From an edit of the demo to its picture in full resolution, through the render thread, while the clean
-/// edges of the one before are being traced.
+/// Time from an edit of the demo to its picture in full resolution, through the render thread, while the clean edges
+/// of the previous revision are being traced.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn published(bencher: Bencher) {
     let (sender, woken) = channel();
     let worker = Worker::new(None, move || {
-        // The receiver is gone when the last frame comes: nobody waits for it.
+        // The receiver may be gone when the last frame arrives; nobody waits for that one.
         let _ = sender.send(());
     })
     .expect("a render thread");
@@ -77,7 +77,7 @@ fn published(bencher: Bencher) {
             pace: Pace::Within(BUDGET),
         });
     };
-    // The render thread learns how fine the first picture may be.
+    // Warm up: the render thread learns how fine the first picture can be.
     for _ in 0..20 {
         submit();
         wait(&worker, &woken, revision.get());
@@ -94,7 +94,7 @@ fn published(bencher: Bencher) {
     });
 }
 
-/// The first frame in full resolution of this revision.
+/// Waits for the first frame in full resolution of this revision.
 fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
     loop {
         woken.recv().expect("the render thread lives");
@@ -107,8 +107,8 @@ fn wait(worker: &Worker, woken: &Receiver<()>, revision: u64) -> Frame {
     }
 }
 
-/// One frame of the window while the camera is being turned with the mouse: a new picture is taken
-/// up and sent on, everything is laid out, the next picture is asked for.
+/// One frame of the window while the camera is turned with the mouse: a new picture is received and uploaded,
+/// everything is laid out, and the next picture is requested.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_while_dragging(bencher: Bencher) {
     let harness = RefCell::new(EditorHarness::new());
@@ -118,8 +118,8 @@ fn window_while_dragging(bencher: Bencher) {
         .bench_local_values(|()| harness.borrow_mut().frame());
 }
 
-/// One frame of the window while the radius of an object is being dragged, in a scene of so many: an
-/// edit costs what it changes, and not what is there.
+/// One frame of the window while the radius of an object is dragged, in scenes with this number of objects: the cost
+/// of an edit must depend on what it changes, not on the size of the scene.
 #[divan::bench(args = [10, 1_000, 100_000], sample_count = 60, sample_size = 1)]
 fn window_while_a_number_is_dragged(bencher: Bencher, objects: u32) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -132,8 +132,8 @@ fn window_while_a_number_is_dragged(bencher: Bencher, objects: u32) {
         .bench_local_values(|()| harness.borrow_mut().frame());
 }
 
-/// Five hundred moves of one object of a hundred thousand, each a step of its own in the history. Prints
-/// the memory that the steps take, where the system tells.
+/// Five hundred moves of one object among a hundred thousand, each its own undo step. Prints the memory that the
+/// steps take, if the system tells it.
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn five_hundred_steps_of_undo(bencher: Bencher) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -151,12 +151,12 @@ fn five_hundred_steps_of_undo(bencher: Bencher) {
         }
     });
     if let (Some(before), Some(after)) = (before, resident_megabytes()) {
-        // What reading the scene has left is used again, so the difference alone would flatter.
+        // Memory freed after reading the scene is reused, so the difference alone would be too low.
         eprintln!("{:.1} MB more, {after:.0} MB in all", after - before);
     }
 }
 
-/// Memory of this process, where the system tells.
+/// Resident memory of this process, if the system tells it.
 fn resident_megabytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -166,7 +166,7 @@ fn resident_megabytes() -> Option<f64> {
     Some(kibibytes / 1024.0)
 }
 
-/// A scene of small balls in rows, all but ten hidden: what the window does is measured, not the tracer.
+/// A scene file of small balls in rows, all but ten hidden, so that the window is measured and not the tracer.
 fn many(objects: u32) -> String {
     let document = Document {
         header: String::new(),
@@ -193,7 +193,7 @@ fn many(objects: u32) -> String {
     document.to_text().expect("a text")
 }
 
-/// One frame of the window in which nothing has happened.
+/// One frame of the window without any input.
 #[divan::bench(sample_count = 100, sample_size = 1)]
 fn window_at_rest(bencher: Bencher) {
     let mut harness = EditorHarness::new();
@@ -203,7 +203,7 @@ fn window_at_rest(bencher: Bencher) {
 struct EditorHarness {
     window: Harness<'static, App>,
     x: f32,
-    /// Where the button was pressed on a number.
+    /// Where the button was pressed on a number field.
     at: egui::Pos2,
     revision: u64,
 }
@@ -257,7 +257,7 @@ impl EditorHarness {
         self.window.step();
     }
 
-    /// Selects the first object, and presses the button on its radius.
+    /// Selects the first object, and presses the button on its radius field.
     fn press_number(&mut self) {
         self.window.get_by_label("Ball 0").click();
         (0..4).for_each(|_| self.window.step());
@@ -272,18 +272,18 @@ impl EditorHarness {
         self.window.step();
     }
 
-    /// Moves the mouse on the number, when the edit before has been taken up.
+    /// Moves the mouse on the number field. The previous edit must have been applied.
     fn drag_number(&mut self) {
         std::thread::sleep(Duration::from_millis(20));
         let revision = self.window.state().editor().revision();
         assert!(revision > self.revision, "nothing has changed");
         self.revision = revision;
-        // To and fro: far enough for a number that is rounded, and never to its limit.
+        // To and fro: far enough to change a rounded number, but never up to its limit.
         self.x = if self.x > 25.0 { 20.0 } else { 30.0 };
         self.window.hover_at(self.at + vec2(self.x, 0.0));
     }
 
-    /// Moves the mouse, when the picture of the last move is there.
+    /// Moves the mouse. The previous move must have been applied.
     fn drag(&mut self) {
         std::thread::sleep(Duration::from_millis(40));
         self.x = if self.x > 900.0 { 700.0 } else { self.x + 1.0 };

@@ -1,7 +1,7 @@
-//! Glint beside Embree 3, where it is installed: `cargo bench --bench embree`. The same scenes, the same shading, two
-//! threads each; Embree's rays in packets of 8 and of 16 (`peer.cpp`, which a C++ compiler builds here and now).
-//! Compare columns of one row. After `--` other scenes can be named, by their files; `--growth=FILE.png` makes the
-//! picture of how cost grows instead, with Embree and POV-Ray in it, and its figures beside it (FILE.csv).
+//! Comparison with Embree 3, if that is installed: `cargo bench --bench embree`. Both draw the same scenes with the
+//! same shading on two threads; Embree with ray packets of 8 and of 16 (`peer.cpp`, which is compiled on every run).
+//! Compare columns within one row. After `--`, scene files can be named; `--growth=FILE.png` instead draws how cost
+//! grows, with Embree and POV-Ray included, and writes the figures to FILE.csv.
 
 #![allow(
     clippy::expect_used,
@@ -23,19 +23,20 @@ use glint::scene::{Document, EXAMPLES, Plane, Projection, Sampling, Scene, Shape
 use glint::trace::{RenderControl, Threads};
 use glint::ui::drawn;
 
-/// The program that draws by Embree.
+/// The compiled program that draws with Embree.
 const PEER: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/embree");
 /// Side of the pictures in pixels.
 const SIDE: u32 = 1024;
-/// Threads of both.
+/// Threads of both programs.
 const THREADS: usize = 2;
-/// Pictures of each, of which the fastest counts.
+/// Runs of each, of which the fastest counts.
 const ROUNDS: usize = 10;
-/// Half the side of the square that stands for a plane, which Embree does not have: as far as the last row below
-/// most horizons, and near enough for mirrors, where it is as inexact as it is large.
+/// Half the side, in world units, of the square that replaces a plane, which Embree lacks: far enough to reach the
+/// last row of pixels below most horizons, and near enough for mirrors, in which the error grows with the size of the
+/// square.
 const ENDLESS: f64 = 1e5;
 
-/// Most points: their numbers are single-precision numbers, too.
+/// Most points: their indices are passed as `f32`, which is exact up to this number.
 const MOST_POINTS: usize = 1 << 24;
 
 fn main() {
@@ -83,7 +84,7 @@ fn build_peer() -> std::io::Result<Output> {
         .output()
 }
 
-/// How cost grows, for all three.
+/// Draws how cost grows with the number of primitives, for all three engines.
 fn chart_growth(file: &Path) {
     let threads = Threads::new(Some(THREADS)).expect("threads");
     let most = 1_000_000;
@@ -128,11 +129,11 @@ fn scenes() -> impl Iterator<Item = (String, Scene)> {
     published.chain(crowds)
 }
 
-/// What Embree made of a scene.
+/// Embree's result for a scene.
 struct Drawn {
-    /// Milliseconds by packets of 8 and of 16 rays.
+    /// Milliseconds with packets of 8 and of 16 rays.
     times: [f64; 2],
-    /// Red, green and blue of the pixels.
+    /// Red, green and blue of each pixel.
     picture: Vec<u8>,
 }
 
@@ -192,14 +193,14 @@ fn print_row(name: &str, mut scene: Scene) {
     );
 }
 
-/// The picture, and the milliseconds of the fastest of a few.
+/// Returns the milliseconds of the fastest run, and the picture.
 fn by_glint(scene: &Scene) -> (f64, Image) {
     let request = RenderRequest {
         sampling: Sampling::Centres,
         ..RenderRequest::still(scene)
     };
     let threads = Threads::new(Some(THREADS)).expect("threads");
-    // Over the last picture, as the window does.
+    // Reuses the image of the last run, as the window does.
     let (mut image, mut planner) = (Image::default(), Planner::default());
     let mut draw = || {
         let since = Instant::now();
@@ -214,7 +215,7 @@ fn by_glint(scene: &Scene) -> (f64, Image) {
     (milliseconds, image)
 }
 
-/// The scene as `peer.cpp` reads it, if that knows all of it.
+/// The scene in the format that `peer.cpp` reads; `None` if that does not support all of it.
 fn numbers_of(scene: &Scene) -> Option<Vec<f32>> {
     let camera = &scene.camera;
     if camera.projection != Projection::Perspective {
@@ -258,7 +259,7 @@ fn numbers_of(scene: &Scene) -> Option<Vec<f32>> {
     Some(numbers)
 }
 
-/// Balls, then points, then the faces between them, each with its material.
+/// The numbers of all balls, then points, then triangles between points, each with its material.
 fn shapes_of(scene: &Scene) -> Option<Vec<f32>> {
     let (mut balls, mut points, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for object in scene.objects.iter().filter(|object| object.visible) {

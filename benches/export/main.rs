@@ -1,5 +1,5 @@
-//! How fast an animation comes to the disk: `cargo bench --bench export`. Tracing, encoding and writing
-//! overlap; the folder is emptied before each run.
+//! Speed of exporting an animation to disk: `cargo bench --bench export`. Tracing, encoding and writing overlap; each
+//! run writes to an empty folder.
 
 #![allow(
     clippy::expect_used,
@@ -43,13 +43,13 @@ fn flight(bencher: Bencher, sampling: Sampling, format: Format) {
         });
 }
 
-/// The 202 frames of the published flight, 1024², one sample, PPM.
+/// The 202 frames of `flight.ron`, 1024², one sample per pixel, PPM.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn flight_ppm(bencher: Bencher) {
     flight(bencher, Sampling::Centres, Format::Ppm);
 }
 
-/// The same with clean edges, PNG.
+/// The same frames with clean edges, PNG.
 #[divan::bench(sample_count = 2, sample_size = 1)]
 fn flight_png_smooth(bencher: Bencher) {
     flight(bencher, Sampling::ADAPTIVE, Format::Png);

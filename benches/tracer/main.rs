@@ -1,6 +1,6 @@
-//! How fast pictures are: `cargo bench`. Machines differ and are busy, so compare rows of one run.
+//! Speed of tracing pictures: `cargo bench`. Machines differ and may be busy, so compare rows of one run only.
 //!
-//! `plain` is the baseline: the image model as a student would write it (`plain.rs`).
+//! `plain` is the baseline: the image model as a student would implement it (`plain.rs`).
 
 #![allow(
     clippy::expect_used,
@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// A baseline that draws another picture measures nothing.
+/// Checks that the baseline draws the same picture; otherwise comparing with it would be meaningless.
 fn agree() {
     let scene = Scene::demo();
     let plain = plain::render(&scene, 256, 256);
@@ -44,7 +44,7 @@ fn agree() {
 
 fn trace(bencher: Bencher, scene: &Scene, request: RenderRequest, threads: usize) {
     let threads = Threads::new(Some(threads)).expect("threads");
-    // Over the last picture, as the window does.
+    // Reuses the image of the last run, as the window does.
     let (mut image, mut planner) = (Image::default(), Planner::default());
     bencher.bench_local(|| {
         let control = RenderControl::default();
@@ -86,7 +86,7 @@ fn demo_1024_lanes(bencher: Bencher, name: &str) {
     trace(bencher, &Scene::demo(), picture, 2);
 }
 
-/// With clean edges: adaptive, and the plain grid that costs about as many rays per edge pixel.
+/// Clean edges: adaptive, and by the plain grid that takes about as many rays per edge pixel.
 #[divan::bench(args = ["adaptive", "grid 4"], sample_count = 20)]
 fn demo_1024_antialias(bencher: Bencher, sampling: &str) {
     let picture = RenderRequest {

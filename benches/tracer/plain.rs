@@ -1,5 +1,5 @@
-//! The baseline: the image model written plainly. One thread, double precision, one ray at a time,
-//! a call through a table for every test of every object, nothing left out, rays that start 0.1
+//! The baseline: a straightforward implementation of the image model. One thread, double precision, one ray at a
+//! time, a virtual call for every intersection test of every object, nothing skipped, secondary rays that start 0.1
 //! away from their surface.
 
 use glam::DVec3;

@@ -1,36 +1,36 @@
-//! What is left to do when the arguments are read.
+//! What is left to do after a command has run.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use crate::lab::Figure;
 
-/// What the command line asked for.
+/// What remains to be done for the command line.
 #[derive(Debug)]
 pub enum CliAction {
     /// Open the editor.
     Editor {
         /// The scene file; the demo if there is none.
         scene: Option<PathBuf>,
-        /// Where to write a picture of the window, which then closes.
+        /// File for a screenshot of the window, which then closes.
         screenshot: Option<PathBuf>,
-        /// Whether the window of exports is opened first.
+        /// Whether the exports window is opened first.
         exports: bool,
-        /// The names of what is selected first.
+        /// The names of what is selected at the start.
         select: Vec<String>,
     },
-    /// Open the editor until its first traced picture is there, and say how long that took.
+    /// Open the editor until its first traced picture is shown, and print how long that took.
     TimeStart {
         /// The scene file; the demo if there is none.
         scene: Option<PathBuf>,
     },
-    /// Draw what was measured into this file.
+    /// Draw measurements into a picture.
     Draw {
-        /// What was measured.
+        /// The measurements.
         figure: Figure,
-        /// The picture file; its ending is known to be good.
+        /// The picture file; its extension has been checked.
         path: PathBuf,
     },
-    /// Nothing more: the command ran and ends with this code.
+    /// Nothing: the command has run, and the process exits with this code.
     Done(ExitCode),
 }

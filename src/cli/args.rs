@@ -1,4 +1,4 @@
-//! Arguments that several commands take.
+//! Arguments that several commands share.
 
 use clap::Args;
 
@@ -6,10 +6,10 @@ use super::error::CliError;
 use crate::scene::MAX_SIDE;
 use crate::trace::{PoolError, Threads};
 
-/// More threads than any machine has cores for.
+/// Most threads: more than any machine has cores.
 const MAX_THREADS: u32 = 256;
 
-/// More repetitions than anybody waits for.
+/// Most repetitions: more than anyone would wait for.
 pub const MAX_TIMES: u32 = 1_000_000;
 
 /// How large a picture is to be.
@@ -32,10 +32,10 @@ pub struct ThreadsArgs {
 }
 
 impl SizeArgs {
-    /// Width and height; one side alone keeps the aspect of the scene's `own`.
+    /// Width and height; if only one side is given, the aspect ratio of `own`, the scene's size, is kept.
     ///
     /// # Errors
-    /// [`CliError::Usage`], where the other side would be longer than a picture can be.
+    /// [`CliError::Usage`], if the other side would be longer than a picture can be.
     pub fn of(self, own: (u32, u32)) -> Result<(u32, u32), CliError> {
         Ok(match (self.width, self.height) {
             (None, None) => own,
@@ -47,19 +47,19 @@ impl SizeArgs {
 }
 
 impl ThreadsArgs {
-    /// Starts them.
+    /// Starts the threads.
     ///
     /// # Errors
-    /// [`PoolError`], where the system has none left.
+    /// [`PoolError`], if the system cannot start them.
     pub fn start(self) -> Result<Threads, PoolError> {
         Threads::new(self.threads.map(|threads| threads as usize))
     }
 }
 
-/// A whole number from `LEAST` to `MOST`.
+/// Parses an integer from `LEAST` to `MOST`.
 ///
 /// # Errors
-/// A sentence that says so, for any other word.
+/// A message that gives the range, for any other word.
 pub fn whole<const LEAST: u32, const MOST: u32>(word: &str) -> Result<u32, String> {
     let number = word.parse().ok();
     number
@@ -67,7 +67,7 @@ pub fn whole<const LEAST: u32, const MOST: u32>(word: &str) -> Result<u32, Strin
         .ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}"))
 }
 
-/// The side of this name, `given · numerator / denominator`, rounded.
+/// The side called `name`: `given · numerator / denominator`, rounded.
 fn in_proportion(
     name: &str,
     given: u32,

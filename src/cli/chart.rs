@@ -1,4 +1,4 @@
-//! `glint chart`: what every way of tracing a scene costs, and how far it is off.
+//! `glint chart`: measures the cost and the error of every way of tracing a scene.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -26,11 +26,11 @@ use crate::scene::{Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::words::{capitalised, counted};
 
-/// Primitives of the largest scene that growth is measured in.
+/// Most primitives of a scene in which growth is measured.
 const MOST_PRIMITIVES: u32 = 1_000_000;
 /// Sides of the picture, in pixels: room for the words, and less than what a screen is out of.
 const SIDES: RangeInclusive<u32> = 480..=8192;
-/// Size of the picture of few scenes, in pixels.
+/// Default size of the picture for few scenes, in pixels.
 const SIZE: (u32, u32) = (1600, 960);
 /// Steps of the progress bar.
 const BAR: u64 = 1000;
@@ -92,14 +92,14 @@ impl ChartArgs {
         }
     }
 
-    /// The smallest size of the picture that shows all of it.
+    /// The smallest picture that shows all charts completely.
     fn least_size(&self) -> (u32, u32) {
-        // Cores are in one chart, of all scenes.
+        // The simulation of cores is one chart for all scenes.
         let charts = if self.cores { 1 } else { self.scenes.len() };
         PictureLook::least_size(charts)
     }
 
-    /// A size that is too small is known before the first ray.
+    /// Refuses a size that is too small, before anything is traced.
     fn check_size(&self) -> Result<(), CliError> {
         let (width, height) = self.least_size();
         match self.size {
@@ -113,19 +113,19 @@ impl ChartArgs {
         }
     }
 
-    /// What is left to do with a figure, if a picture was asked for.
+    /// The action that draws a figure, if a picture was requested.
     fn drawn(&self, figure: Figure) -> Option<CliAction> {
         let path = self.png.clone();
         path.map(|path| CliAction::Draw { figure, path })
     }
 }
 
-/// Measures, prints the table, and writes what was asked for. The picture is left to whoever can draw.
+/// Measures, prints the table, and writes the CSV file. Drawing the picture is left to the caller.
 ///
 /// # Errors
-/// [`CliError`]: a scene that is none, a picture in no known format, or a file that cannot be written.
+/// [`CliError`], if a scene is invalid, if the picture has no known format, or if a file cannot be written.
 pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
-    // A name that cannot be written is known before the first ray.
+    // A bad file name is reported before anything is traced.
     picture_format(args.png.as_deref())?;
     args.check_size()?;
     check_table(args.csv.as_deref())?;
@@ -140,7 +140,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     if args.growth {
         return grow(args, &threads);
     }
-    // One that cannot be read is known before the first ray too.
+    // So is a scene that cannot be read.
     let scenes = args.scenes.iter().map(|path| Ok((path, read_scene(path)?)));
     let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
     if args.cores {
@@ -164,7 +164,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         if args.within.is_some() || args.budget.is_some() {
             say(&advice(&study, args.within, args.budget));
         }
-        // Nobody looks at the pictures here, which may be many and large.
+        // The pictures, which may be many and large, are not needed here.
         for dot in &mut study.measurements {
             dot.picture = None;
         }
@@ -183,7 +183,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     }))
 }
 
-/// What a scene is called: by its file, or all of its path where others have a file of the same name.
+/// Name of a scene: the stem of its file, or its whole path if other scenes have the same stem.
 fn name_of(path: &Path, scenes: &[PathBuf]) -> String {
     let name = |path: &Path| capitalised(&path.file_stem().unwrap_or_default().to_string_lossy());
     let own = name(path);
@@ -195,7 +195,7 @@ fn name_of(path: &Path, scenes: &[PathBuf]) -> String {
     }
 }
 
-/// A size such as `1600x960`.
+/// Parses a size such as `1600x960`.
 fn picture_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', '×']);
     let side = |text: &str| text.trim().parse().ok().filter(|side| SIDES.contains(side));
@@ -204,7 +204,7 @@ fn picture_size(text: &str) -> Result<(u32, u32), String> {
     size.ok_or_else(|| format!("expected a size such as 1600x960, sides from {least} to {most}"))
 }
 
-/// The same for scenes of more and more primitives.
+/// Measures how time grows with the number of primitives, and prints and writes the costs.
 fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
     let mut growth = Growth::new(args.side, MOST_PRIMITIVES);
     if args.povray {
@@ -234,9 +234,9 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     Ok(args.drawn(Figure::Growth(growth, args.look())))
 }
 
-/// What more cores would do for the scenes.
+/// Simulates how more cores would share the pictures of the scenes, and prints and writes the figures.
 fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAction>, CliError> {
-    // Planning is what one worker does alone.
+    // One thread, because planning is done by one worker alone.
     let alone = Threads::new(Some(1))?;
     let mut pictures = Vec::new();
     for (path, scene) in scenes {
@@ -273,7 +273,7 @@ fn measure(study: &mut Study, threads: &Threads) {
     bar.finish_and_clear();
 }
 
-/// Which way of tracing to take.
+/// The way of tracing that meets the given limits, in a sentence.
 fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> String {
     let costs = costs_of_choices(study);
     let budget = budget.unwrap_or(Duration::MAX);

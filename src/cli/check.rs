@@ -1,4 +1,4 @@
-//! `glint check`: are these scenes valid?
+//! `glint check`: validates scenes.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ pub struct CheckArgs {
     scenes: Vec<PathBuf>,
 }
 
-/// One line per valid file on stdout, one message per refused file on stderr.
+/// Prints one line per valid file to stdout, and one message per refused file or missing mesh to stderr.
 pub fn run(args: &CheckArgs) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for path in &args.scenes {

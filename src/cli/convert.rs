@@ -1,4 +1,4 @@
-//! `glint convert`: a mesh file becomes a scene, or a scene a file for POV-Ray.
+//! `glint convert`: turns a mesh file into a scene, or a scene into a file for POV-Ray.
 
 use std::path::{Path, PathBuf, absolute};
 
@@ -23,10 +23,10 @@ pub struct ConvertArgs {
     output: PathBuf,
 }
 
-/// Writes a scene that shows the mesh whole, lit from two sides; or the scene in POV-Ray's language.
+/// Writes a scene that shows the whole mesh, lit from two sides; or the scene in POV-Ray's language.
 ///
 /// # Errors
-/// [`CliError`]: a file that cannot be read, or one that cannot be written.
+/// [`CliError`], if a file cannot be read or written.
 pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
     let output = args.output.display();
     match (is_mesh_file(&args.input), &args.output) {
@@ -58,7 +58,7 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The option that names a file to POV-Ray, as a shell needs it: POV-Ray takes the word apart once more.
+/// The option that gives POV-Ray its input file, quoted for a shell. POV-Ray parses the argument once more.
 fn input_option(path: &str) -> String {
     let is_plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
     if path.chars().all(is_plain) {
@@ -67,7 +67,7 @@ fn input_option(path: &str) -> String {
     for_shell(&format!("+I\"{path}\""))
 }
 
-/// A path whose folder has the name that it has without links and steps back, if it is there.
+/// Resolves links and `..` in the folder of a path, if the folder exists.
 fn in_real_folder(path: PathBuf) -> PathBuf {
     let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
     match (folder, path.file_name()) {
@@ -87,7 +87,7 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
         folder.is_some_and(|folder| input.starts_with(folder))
     };
     if !is_below(&input, &output) {
-        // One folder may have several names.
+        // The same folder may have been given under two names.
         (input, output) = (in_real_folder(input), in_real_folder(output));
     }
     let read = Scene::of_mesh_file(&input, output.parent());

@@ -1,4 +1,4 @@
-//! `glint --install-desktop`: what a desktop and a shell want to know of the program, for one user.
+//! `glint --install-desktop`: integration into the desktop and shells of one user.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -12,15 +12,15 @@ use crate::files::{make_folder, write_atomic};
 /// The icon, 256 pixels wide, traced by Glint from `assets/icon.ron`.
 const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
-/// Where each shell looks for what it can complete.
+/// Where each shell looks for completions.
 const SHELLS: [(Shell, &str); 3] = [
     (Shell::Bash, "bash-completion/completions/glint"),
     (Shell::Zsh, "zsh/site-functions/_glint"),
     (Shell::Fish, "fish/vendor_completions.d/glint.fish"),
 ];
 
-/// Writes the entry of the menu, the icon, the pages of the manual and the completions into the user's data folder,
-/// and says where they are. Any that are there are replaced.
+/// Writes the menu entry, the icon, the manual pages and the shell completions into the user's data folder, and
+/// prints their paths. Existing ones are replaced.
 ///
 /// # Errors
 /// [`CliError::Failed`], if there is no such folder or a file cannot be written.
@@ -49,7 +49,7 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The user's data folder, by the XDG Base Directory Specification.
+/// The user's data folder, according to the XDG Base Directory Specification.
 fn data_folder() -> Option<PathBuf> {
     let set = |name| env::var_os(name).map(PathBuf::from);
     let own = set("XDG_DATA_HOME").filter(|folder| folder.is_absolute());
@@ -57,9 +57,9 @@ fn data_folder() -> Option<PathBuf> {
     own.or_else(|| home.map(|home| home.join(".local/share")))
 }
 
-/// An entry by the Desktop Entry Specification.
+/// A menu entry according to the Desktop Entry Specification.
 fn desktop_entry(program: &Path) -> String {
-    // Inside of quotes, these are written with a backslash, and those twice in a string.
+    // In a quoted argument these are escaped by a backslash, which is itself escaped in a string value.
     let mut quoted = String::new();
     for letter in program.display().to_string().chars() {
         match letter {

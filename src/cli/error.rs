@@ -1,4 +1,4 @@
-//! How a command ends, and what it says.
+//! Errors, output and exit codes of commands.
 
 use std::error::Error;
 use std::io::{ErrorKind, Write as _};
@@ -10,15 +10,15 @@ use crate::image::FormatError;
 use crate::scene::SceneError;
 use crate::trace::PoolError;
 
-/// Exit code when the work failed.
+/// Exit code if the work failed.
 const FAILED: u8 = 1;
-/// Exit code when the arguments or the file were wrong.
+/// Exit code if the arguments or the file were wrong.
 pub const WRONG: u8 = 2;
 
-/// What went wrong, whatever it is.
+/// The underlying error.
 type Source = Box<dyn Error + Send + Sync>;
 
-/// Why a command did not do what it was asked for.
+/// Error of a command.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// The arguments or the file were wrong: nothing was done.
@@ -30,22 +30,22 @@ pub enum CliError {
 }
 
 impl CliError {
-    /// The arguments or the file were wrong.
+    /// An error in the arguments or the file.
     pub fn usage(error: impl Into<Source>) -> Self {
         Self::Usage(error.into())
     }
 
-    /// The work failed.
+    /// A failure of the work.
     pub fn failed(error: impl Into<Source>) -> Self {
         Self::Failed(error.into())
     }
 
-    /// Nobody asked a trace to stop, and it did.
+    /// The failure of a trace that ended without a picture, although nothing stops one here.
     pub fn no_picture() -> Self {
         Self::failed("the trace ended without a picture")
     }
 
-    /// Says it on stderr; the exit code for it.
+    /// Reports the error on stderr, and returns its exit code.
     pub fn report(&self) -> ExitCode {
         report_error(&self.to_string());
         match self {
@@ -91,10 +91,10 @@ impl From<serde_json::Error> for CliError {
     }
 }
 
-/// Why a result could not be written.
+/// Why a result could not be written to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// One result line on stdout. A reader that went away is no fault of ours; [`finish`] tells of what else went wrong.
+/// Prints a line of results to stdout. A closed pipe is not an error; [`finish`] reports any other one.
 pub fn say(line: &str) {
     if let Err(error) = writeln!(std::io::stdout(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe
@@ -103,7 +103,7 @@ pub fn say(line: &str) {
     }
 }
 
-/// The exit code of a command that would end with this one: another, if a result was lost.
+/// Returns the exit code of a command: `code`, or a failure if a result could not be written.
 pub fn finish(code: ExitCode) -> ExitCode {
     match LOST.get() {
         None => code,
@@ -114,12 +114,12 @@ pub fn finish(code: ExitCode) -> ExitCode {
     }
 }
 
-/// One line on stderr about what is not as it was asked for, though the command goes on.
+/// Prints a line to stderr about something that is not as requested, although the command goes on.
 pub fn report_warning(warning: &str) {
     let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }
 
-/// One line about what went wrong on stderr.
+/// Prints a line to stderr about an error.
 pub fn report_error(error: &str) {
     let _ = writeln!(std::io::stderr(), "error: {error}");
 }

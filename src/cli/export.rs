@@ -1,5 +1,4 @@
-//! `glint export`: an animation as files, taken up where it was left; `glint job`: the same for a
-//! farm.
+//! `glint export`: writes an animation as files, resuming where it was left; `glint job`: the same for a render farm.
 
 use std::path::{PathBuf, absolute};
 use std::sync::Arc;
@@ -21,7 +20,7 @@ use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
 use crate::words::counted;
 
-/// What is exported, for a folder and for a job.
+/// Arguments that `export` and `job` share.
 #[derive(Debug, Args)]
 struct SequenceArgs {
     /// The scene file (RON)
@@ -80,7 +79,7 @@ fn format_of(word: &str) -> Result<Format, String> {
 }
 
 impl SequenceArgs {
-    /// The frames of a scene.
+    /// The frames to be made of a scene.
     fn sequence(&self, mut scene: Scene, folder: PathBuf) -> Result<Sequence, CliError> {
         let render = &mut scene.render;
         (render.width, render.height) = self.size.of((render.width, render.height))?;
@@ -91,10 +90,10 @@ impl SequenceArgs {
     }
 }
 
-/// Writes the frames that are not there as they should be, then the video.
+/// Writes the frames that are missing or outdated, then the video.
 ///
 /// # Errors
-/// [`CliError`]: arguments that fit no scene, or frames that cannot be written.
+/// [`CliError`], if the arguments do not fit the scene, or if frames or the video cannot be written.
 pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let video = args.video.as_deref();
     let video = video.map(|path| Video::of_path(path).map(|video| (path, video)));
@@ -103,7 +102,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let sequence = args.what.sequence(scene, args.output.clone())?;
     if let Some((path, video)) = video {
         let remark = video.check(&sequence).map_err(CliError::usage)?;
-        // It may be in the folder of the frames, which need not be there yet.
+        // The video may go into the folder of the frames, which need not exist yet.
         let of_video = path.parent().and_then(|folder| absolute(folder).ok());
         let is_with_frames = of_video.is_some() && of_video == absolute(&sequence.folder).ok();
         if is_with_frames && !args.dry_run {
@@ -190,7 +189,7 @@ fn export(
     })
 }
 
-/// A bar as long as a sequence; none is seen where a runner reads.
+/// A bar with one step per frame of a sequence; hidden if a job runner reads the output.
 fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
     if is_openjd {
         return ProgressBar::hidden();
@@ -201,18 +200,18 @@ fn bar(sequence: &Sequence, is_openjd: bool, style: &str) -> ProgressBar {
     bar
 }
 
-/// Tells how far it is: a bar on a terminal, or lines for a runner.
+/// Reports progress: as a bar on a terminal, or as lines for a job runner.
 struct ProgressReporter {
     bar: ProgressBar,
     is_openjd: bool,
-    /// What was told last: how many frames there are, and the line about their share.
+    /// What was last reported: the number of finished frames, and the line with their share.
     told: Option<usize>,
     line: String,
 }
 
 impl ProgressReporter {
     fn new(sequence: &Sequence, is_openjd: bool) -> Self {
-        // How long the others take nobody knows before the first.
+        // Without a time left: it is unknown before the first frame.
         let bar = bar(sequence, is_openjd, "{spinner} {bar:32} {pos}/{len} frames");
         Self {
             bar,
@@ -232,7 +231,7 @@ impl ProgressReporter {
             restyle(&self.bar, style);
         }
         self.bar.set_position(so_far as u64);
-        // That all is done is said when it is, of the video too.
+        // 100 % is reported by `end`, when the video is done, too.
         if self.is_openjd && so_far < done.total {
             let share = so_far as f64 * 100.0 / done.total.max(1) as f64;
             let line = format!("openjd_progress: {share:.1}");
@@ -250,7 +249,7 @@ impl ProgressReporter {
         }
     }
 
-    /// Makes room for another bar.
+    /// Removes the bar, to make room for another one.
     fn clear(&self) {
         self.bar.finish_and_clear();
     }
@@ -263,10 +262,10 @@ impl ProgressReporter {
     }
 }
 
-/// Writes the template of a job, and the scene beside it.
+/// Writes the job template, and the scene beside it.
 ///
 /// # Errors
-/// [`CliError`]: arguments that fit no scene, or a file that cannot be written.
+/// [`CliError`], if the arguments do not fit the scene, or if a file cannot be written.
 pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     let (file, path) = (&args.what.scene, &args.output);
     let document = read_whole_document(file)?;

@@ -1,4 +1,4 @@
-//! What `glint [SCENE]` does where no window can be opened: says why, and traces a picture instead.
+//! What `glint [SCENE]` does if no window can be opened: explains why, and traces a picture instead.
 
 use std::path::{Path, PathBuf};
 
@@ -10,20 +10,20 @@ use crate::plan::RenderRequest;
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Threads};
 
-/// What a Debian or Ubuntu system needs to show a window.
+/// Packages that a Debian or Ubuntu system needs to show a window.
 const PACKAGES: &str = "libgl1 libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 (or, on Wayland, libwayland-client0 libwayland-egl1 libxkbcommon0 libegl1)";
 
-/// Explains in two lines why there is no window, then traces the scene to `SCENE.png` in the
-/// current folder (`SCENE-2.png` if there is one already).
+/// Explains in two lines why there is no window, then traces the scene to `SCENE.png` in the current folder
+/// (`SCENE-2.png` if that exists).
 ///
 /// # Errors
-/// [`CliError`]: a scene that is none, or a picture that cannot be written.
+/// [`CliError`], if the scene is invalid, or the picture cannot be traced or written.
 pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(), CliError> {
     let (scene, name) = match scene {
         None => (Scene::demo(), PathBuf::from("demo.png")),
         Some(path) => {
             let stem = path.file_stem().unwrap_or(path.as_os_str());
-            // What is before the last point of a name may have points too.
+            // `with_extension` would cut off what follows a dot within the stem.
             let mut name = stem.to_owned();
             name.push(".png");
             (read_scene(path)?, PathBuf::from(name))
@@ -48,7 +48,7 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
     Ok(())
 }
 
-/// A picture's name, or the first of `NAME-2.png`, `NAME-3.png`, … that no file has yet.
+/// The name of the picture, or the first of `NAME-2.png`, `NAME-3.png`, … that does not exist yet.
 fn free_path(wanted: PathBuf) -> PathBuf {
     let stem = wanted.file_stem().unwrap_or_default().to_owned();
     let mut path = wanted;

@@ -1,8 +1,8 @@
-//! Errors and times that a picture is to keep to, in words.
+//! Parsing of limits on the error and time of a picture.
 
 use std::time::Duration;
 
-/// An error such as `55dB`, or `0.0018` as a root mean square of linear colours from 0 to 1.
+/// Parses an error such as `55dB`, or `0.0018` as the root mean square over linear colours from 0 to 1.
 pub fn error(word: &str) -> Result<f64, String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
     let rmse = match word.to_ascii_lowercase().strip_suffix("db") {
@@ -15,7 +15,7 @@ pub fn error(word: &str) -> Result<f64, String> {
         })
 }
 
-/// A time such as `16ms` or `2s`; a number alone means milliseconds.
+/// Parses a time such as `16ms` or `2s`; a number alone is in milliseconds.
 pub fn time(word: &str) -> Result<Duration, String> {
     let word = word.to_ascii_lowercase();
     let (number, millis) = if let Some(millis) = word.strip_suffix("ms") {

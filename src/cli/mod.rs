@@ -1,5 +1,5 @@
-//! The command line: parses words, prints lines. Results go to stdout, errors to stderr; the exit
-//! code is 0 for done, 1 for failed work, 2 for wrong arguments or a wrong file.
+//! The command line: parses arguments, prints lines. Results go to stdout, errors to stderr. The exit code is 0 for
+//! success, 1 for failed work, 2 for wrong arguments or a wrong file.
 
 mod error;
 
@@ -105,7 +105,7 @@ enum CliCommand {
     Referee(referee::RefereeArgs),
 }
 
-/// Reads the command line and runs its command, if it has one.
+/// Parses the command line and runs its command, if there is one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     match run_words(words.into_iter().collect()) {
         CliAction::Done(code) => CliAction::Done(finish(code)),
@@ -135,7 +135,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
     let words = match CliArgs::try_parse_from(words) {
         Ok(words) => words,
         Err(error) => {
-            // Help and version are "errors" of exit code 0 that go to stdout.
+            // clap returns help and version as "errors" that go to stdout and have exit code 0.
             if error.use_stderr() {
                 let _ = error.print();
                 return CliAction::Done(WRONG.into());
@@ -175,7 +175,7 @@ impl CliArgs {
         if self.stats_start {
             return Ok(CliAction::TimeStart { scene: self.scene });
         }
-        // A name that cannot be written is known before the window opens.
+        // A bad file name is reported before the window opens.
         picture_format(self.screenshot.as_deref())?;
         if self.screenshot.is_some() {
             self.check_shown()?;
@@ -188,8 +188,8 @@ impl CliArgs {
         })
     }
 
-    /// Whether the scene that a screenshot shall show is one, and has what is selected in it: nobody reads in the window
-    /// that it is not so.
+    /// Checks that the scene for a screenshot is valid and has the objects to be selected: nobody would read an error
+    /// in the window.
     fn check_shown(&self) -> Result<(), CliError> {
         let shown = self.scene.as_deref().map(Document::load).transpose()?;
         let shown = shown.map_or_else(Scene::demo, |shown| shown.scene);
@@ -206,14 +206,14 @@ impl CliArgs {
     }
 }
 
-/// Whether letters may have colours, by what users set where they want none (<https://no-color.org>).
+/// Returns whether text may be coloured, by the environment variables that turn colours off (<https://no-color.org>).
 fn has_colors() -> bool {
     let set = |name| std::env::var_os(name).unwrap_or_default();
     set("NO_COLOR").is_empty() && set("TERM") != "dumb"
 }
 
-/// The first word, if it was meant as a command that there is not: the editor takes one scene only, and a name
-/// without folder and ending that is no file is not one.
+/// Returns the first argument if it was probably meant as a command that does not exist: it is followed by another
+/// word, or it is a bare name without folder and extension, and no such file exists.
 fn unknown_command(words: &[OsString]) -> Option<String> {
     let is_plain = |word: &OsString| !word.to_string_lossy().starts_with('-');
     let [_, first, others @ ..] = words else {

@@ -17,10 +17,10 @@ pub struct PlanArgs {
     json: bool,
 }
 
-/// One line per rule of the plan on stdout.
+/// Prints one line per rule of the plan to stdout.
 ///
 /// # Errors
-/// [`CliError::Usage`] for a scene that is none.
+/// [`CliError::Usage`], if the scene is invalid.
 pub fn run(args: &PlanArgs) -> Result<(), CliError> {
     let scene = read_scene(&args.scene)?;
     let request = RenderRequest::still(&scene);

@@ -1,4 +1,4 @@
-//! `glint referee`: whether an independent engine draws the same picture.
+//! `glint referee`: compares the picture with that of an independent engine.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use crate::scene::Sampling;
 use crate::trace::RenderControl;
 use crate::words::counted;
 
-/// How many times brighter differences are in their picture.
+/// Factor by which the output picture amplifies differences.
 const ENLARGED: u16 = 64;
 
 #[derive(Debug, Args)]
@@ -31,10 +31,11 @@ pub struct RefereeArgs {
     threads: ThreadsArgs,
 }
 
-/// Draws the scene twice, one ray through the middle of each pixel, and says how far the pictures differ.
+/// Draws the scene with both engines, one ray through the centre of each pixel, and prints how far the pictures
+/// differ.
 ///
 /// # Errors
-/// [`CliError`]: a scene that is none, no POV-Ray, or a picture that cannot be written.
+/// [`CliError`], if the scene is invalid, if POV-Ray fails or is missing, or if the picture cannot be written.
 pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     picture_format(args.output.as_deref())?;
     let mut scene = read_scene(&args.scene)?;
@@ -46,7 +47,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     let theirs =
         by_povray(&scene, threads.count(), &RenderControl::default()).map_err(CliError::failed)?;
     let request = RenderRequest::still(&scene);
-    // Twice, as POV-Ray's time is without reading the scene: the first makes meshes ready.
+    // Twice, because POV-Ray's time does not include reading the scene: the first run prepares the meshes.
     let mut ours = Image::new(request.width as usize, request.height as usize);
     let (mut planner, control) = (Planner::default(), RenderControl::default());
     let mut trace = || render_into(&mut ours, &mut planner, &scene, &request, &control);

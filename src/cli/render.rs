@@ -1,4 +1,4 @@
-//! `glint render`: a scene file in, a picture file out.
+//! `glint render`: traces a scene file into a picture file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -75,7 +75,7 @@ struct Stats {
     trace_ms_min: f64,
     rays: Rays,
     lanes: String,
-    /// What was chosen, where that was asked for.
+    /// The chosen sampling, if `--within` or `--budget` was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     chosen: Option<ChosenSampling>,
     threads: usize,
@@ -86,9 +86,9 @@ struct Stats {
 #[derive(Serialize)]
 struct ChosenSampling {
     antialias: String,
-    /// As measured on strips of the picture.
+    /// The error measured on strips of the picture.
     rmse: f64,
-    /// Whether it keeps to what was asked for.
+    /// Whether it meets the limit that was given.
     is_met: bool,
 }
 
@@ -102,12 +102,13 @@ fn lanes(word: &str) -> Result<Level, String> {
     })
 }
 
-/// Traces and writes the picture, then prints what was asked for.
+/// Traces and writes the picture, then prints the statistics.
 ///
 /// # Errors
-/// [`CliError`]: a scene that is none, a frame that it does not have, or a picture that cannot be written.
+/// [`CliError`], if the scene is invalid, if it does not have the frame, or if the picture cannot be traced or
+/// written.
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
-    // A name that cannot be written is known before the first ray.
+    // A bad file name is reported before anything is traced.
     let format = picture_format(args.output.as_deref())?;
     let mut scene = match args.frame {
         None => read_scene(&args.scene)?,
@@ -170,7 +171,7 @@ fn frame(word: &str) -> Result<u64, String> {
     number.ok_or_else(|| "frames are whole numbers, counted from 1".to_owned())
 }
 
-/// The scene as its animation shows it in a frame.
+/// The scene in a frame of its animation.
 fn at_frame(scene: Scene, frame: u64) -> Result<Scene, NoSuchFrame> {
     let count = scene.animation.frame_count();
     if frame > count {
@@ -182,7 +183,7 @@ fn at_frame(scene: Scene, frame: u64) -> Result<Scene, NoSuchFrame> {
 }
 
 impl RenderArgs {
-    /// The sampling that keeps to what was asked for, if anything was.
+    /// The sampling that meets the given limit, if there is one.
     fn choose(
         &self,
         scene: &Scene,
@@ -214,7 +215,7 @@ impl RenderArgs {
     }
 }
 
-/// Traces so many times, the last time into a file if one is given.
+/// Traces `repeat` times, the last time into a file if one is given.
 fn trace(
     scene: &Scene,
     (request, mut film): (&RenderRequest, Film),
@@ -223,7 +224,7 @@ fn trace(
 ) -> Result<Vec<RenderCost>, CliError> {
     let stopped = |_| CliError::no_picture();
     let mut costs = Vec::new();
-    // They are all the same, and may be large.
+    // All runs use the same prepared meshes, which may be large.
     let mut planner = Planner::default();
     for left in (0..repeat).rev() {
         let mut drawing = film.draw(&mut planner, (scene, request), control);
@@ -237,7 +238,7 @@ fn trace(
     Ok(costs)
 }
 
-/// Does work that takes so many pixels, with a bar on a terminal if it takes a while; `None` if it has panicked.
+/// Does work on `total` pixels in the background, with a progress bar if it takes a while; `None` if it panics.
 fn with_bar<T: Send + 'static>(
     total: u64,
     work: impl FnOnce(&RenderControl) -> T + Send + 'static,
@@ -262,7 +263,7 @@ fn stats(
     costs: &[RenderCost],
     threads: usize,
 ) -> Stats {
-    // The first run has made the meshes ready for all of them.
+    // The first run prepares the meshes for all of them.
     let counted = if costs.len() > 1 { &costs[1..] } else { costs };
     let mut millis: Vec<f64> = counted
         .iter()

@@ -1,14 +1,14 @@
-//! Scenes that commands read.
+//! Reading of scenes for commands.
 
 use std::path::Path;
 
 use super::error::{CliError, report_warning};
 use crate::scene::{Document, Scene};
 
-/// Reads a scene. What is missing in it is said on stderr, once, and the rest is there.
+/// Reads a scene. Objects whose meshes are missing are reported on stderr; the rest is kept.
 ///
 /// # Errors
-/// [`CliError::Usage`], for a file that is no scene.
+/// [`CliError::Usage`], if the file is not a valid scene.
 pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
     let scene = Document::load(path)?.scene;
     for problem in missing_meshes(path, &scene) {
@@ -17,10 +17,12 @@ pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
     Ok(scene)
 }
 
-/// Reads a scene of which frames are made: a farm would take those without a mesh for good ones.
+/// Reads a scene for tracing frames. Missing meshes are an error, because a render farm would take frames without
+/// them for good ones.
 ///
 /// # Errors
-/// [`CliError::Usage`], for a file that is no scene; [`CliError::Failed`], if a mesh of it could not be read.
+/// [`CliError::Usage`], if the file is not a valid scene; [`CliError::Failed`], if one of its meshes could not be
+/// read.
 pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     let document = Document::load(path)?;
     match missing_meshes(path, &document.scene).first() {
@@ -32,7 +34,7 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     }
 }
 
-/// A line for each object whose mesh could not be read.
+/// A message for each object whose mesh could not be read.
 pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
     let said = |(index, why): (usize, &str)| {
         let name = &scene.objects[index].name;

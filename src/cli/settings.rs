@@ -1,17 +1,17 @@
-//! Flags for the tracer's settings, made from the scene's own list.
+//! Flags for the tracer's settings, generated from the list in `scene`.
 
 use clap::{Arg, ArgMatches, Args, Command, Error, FromArgMatches, ValueHint};
 
 use crate::scene::{Method, Render, Setting, VisitSetting};
 
-/// What was asked for, by setting. All of it is known to be valid.
+/// The values that were given, by setting; all of them are valid.
 #[derive(Clone, Debug, Default)]
 pub struct SettingArgs {
     asked: Vec<(&'static str, String)>,
 }
 
 impl SettingArgs {
-    /// Puts what was asked for in place of the scene's own.
+    /// Replaces the scene's own values by those that were given.
     pub fn apply(&self, render: &mut Render) {
         for (name, id) in &self.asked {
             render.choose(name, id);
@@ -33,7 +33,7 @@ impl VisitSetting for Flags {
             .value_name("METHOD")
             .long_help(format!("{help}{}", lines.collect::<String>()))
             .help(help)
-            // Shells offer no files for it.
+            // So that shells do not complete file names here.
             .value_hint(ValueHint::Other)
             .value_parser(|id: &str| M::parse(id).map(|_| id.to_owned()));
         self.0 = std::mem::take(&mut self.0).arg(arg);

@@ -1,4 +1,4 @@
-//! `glint stability`: where formulas break.
+//! `glint stability`: measures where formulas fail.
 
 use std::path::PathBuf;
 
@@ -26,12 +26,12 @@ pub struct StabilityArgs {
     effort: u32,
 }
 
-/// Tries, prints the summary, and writes what was asked for. The picture is left to whoever can draw.
+/// Measures, prints the summary, and writes the table. Drawing the picture is left to the caller.
 ///
 /// # Errors
-/// [`CliError`]: a picture in no known format, or a file that cannot be written.
+/// [`CliError`], if the picture has no known format, or if a file cannot be written.
 pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
-    // A name that cannot be written is known before the first ray.
+    // A bad file name is reported before anything is traced.
     picture_format(args.png.as_deref())?;
     check_table(args.csv.as_deref())?;
     let maps = maps(args.effort);

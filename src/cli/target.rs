@@ -1,4 +1,4 @@
-//! Files that commands write.
+//! Checks of the files that commands are to write.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use crate::files::has_ending;
 use crate::image::Format;
 use crate::mesh::is_mesh_file;
 
-/// The format of a picture that is to be written, known before the first ray, as is whether it can be.
+/// Returns the format of a picture, and checks that it can be written, before anything is traced.
 ///
 /// # Errors
-/// [`CliError`], for an ending of no format and a place where nothing can be written.
+/// [`CliError`], if the extension is of no known format, or if nothing can be written there.
 pub fn picture_format(path: Option<&Path>) -> Result<Option<Format>, CliError> {
     let Some(path) = path else {
         return Ok(None);
@@ -21,10 +21,10 @@ pub fn picture_format(path: Option<&Path>) -> Result<Option<Format>, CliError> {
     Ok(Some(format))
 }
 
-/// Whether figures can be written as a table, if they are to be.
+/// Checks that measurements can be written to this file, if there is one.
 ///
 /// # Errors
-/// [`CliError`], for a place where nothing can be written, and the ending of a scene, a mesh or a picture.
+/// [`CliError`], if nothing can be written there, or if the extension is that of a scene, a mesh or a picture.
 pub fn check_table(path: Option<&Path>) -> Result<(), CliError> {
     let Some(path) = path else {
         return Ok(());

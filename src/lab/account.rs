@@ -1,14 +1,14 @@
-//! What a way of tracing does, where it comes from, and what that costs and gives here: two sentences.
+//! Describes in two sentences what a way of tracing does, where it comes from, and what it costs and gains here.
 
 use super::candidates::{Candidate, Family, UNCULLED};
 use super::study::{Measurement, Study};
 use crate::scene::{Chosen, SphereMethod};
 use crate::words::capitalised;
 
-/// Ratios closer to one than this are none.
+/// Relative difference below which ratios count as 1.
 const ALIKE: f64 = 0.05;
 
-/// What a measured way does, and how it compares with the first, which is the default.
+/// Describes a measured way, and compares it with the first, which is the default.
 pub fn account(study: &Study, index: usize) -> String {
     let (Some(own), Some(default)) = (study.measurements.get(index), study.measurements.first())
     else {
@@ -21,7 +21,7 @@ pub fn account(study: &Study, index: usize) -> String {
     compared(own, default).map_or(what.clone(), |figures| format!("{what} {figures}"))
 }
 
-/// What it does in another way than the default, and who came up with that.
+/// Describes how it differs from the default, with the source of each method.
 fn what(candidate: &Candidate, default: &Candidate) -> String {
     match candidate.family {
         Family::Original => {
@@ -70,7 +70,7 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
     format!("{}.", capitalised(&parts.join("; ")))
 }
 
-/// How long it takes and how far it is off, in times of the default; why is told by the rays.
+/// Compares its time, rays and error with those of the default.
 fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
     let (time, usual) = (own.timing()?.median, default.timing()?.median);
     let error = own.metrics?.rmse / default.metrics?.rmse;
@@ -90,7 +90,7 @@ fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
     Some(format!("Here it is {speed}, with {rays}, and {closeness}."))
 }
 
-/// How many times less or more of a cost or an error there is; `None` for about as much.
+/// A ratio in words, with `less` or `more` added; `None` if it is about 1.
 fn told(ratio: f64, less: &str, more: &str) -> Option<String> {
     match ratio {
         ratio if ratio < 1.0 - ALIKE => Some(times(1.0 / ratio) + less),

@@ -1,4 +1,4 @@
-//! Which ways of tracing a picture are compared.
+//! The ways of tracing a picture that are compared.
 
 use crate::plan::{Model, RenderRequest};
 use crate::scene::{
@@ -7,25 +7,25 @@ use crate::scene::{
 };
 use crate::words::counted;
 
-/// What a way of tracing differs in from the plan.
+/// The kind of difference between a way of tracing and the plan's choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
-    /// Where and how many samples there are, and how deep they go.
+    /// The number and places of samples, and the depth of reflections.
     Sampling,
-    /// The formulas, and how primitives are found.
+    /// The formulas, and the search for primitives.
     Formulas,
-    /// The real type.
+    /// The floating-point type.
     Precision,
-    /// The size of the picture that is traced.
+    /// The size of the traced picture.
     Resolution,
-    /// Everything, as in the program that this one grew from.
+    /// Everything: the original program, from which this one grew.
     Original,
-    /// Everything, since it is another engine that draws.
+    /// Everything: another engine draws the picture.
     Referee,
 }
 
 impl Family {
-    /// All of them, with their names.
+    /// All kinds, with their names.
     pub const ALL: [(Self, &'static str); 6] = [
         (Self::Sampling, "sampling"),
         (Self::Formulas, "formulas"),
@@ -39,47 +39,47 @@ impl Family {
 /// One way of tracing a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// What it is called in the chart.
+    /// Its name in the chart.
     pub name: String,
-    /// What it differs in.
+    /// How it differs from the plan's choice.
     pub family: Family,
     /// Its settings. Width and height are those of the finished picture.
     pub render: Render,
-    /// Whether parts of the model that the scene does not need are left out.
+    /// Which parts of the model are left out because the scene does not need them.
     pub model: Model,
-    /// The picture is traced with so many times fewer pixels along each side, and scaled up.
+    /// Factor by which each side of the traced picture is smaller; the picture is then scaled up.
     pub upscale: u32,
 }
 
-/// What the scene's own settings are called.
+/// Name of the scene's own settings.
 pub const OWN: &str = "this scene";
-/// What the other engine is called.
+/// Name of the other engine.
 pub const POVRAY: &str = "POV-Ray";
 
-/// What the plan is called where every primitive is tested for every ray. A formula that hits spheres where they
-/// are not is to show that, and is compared with this.
+/// Name of the plan's choice with every primitive tested for every ray. Sphere formulas are compared with this:
+/// culling would hide hits where there is no sphere.
 pub const UNCULLED: &str = "no culling";
 
-/// Sides of the plain grids.
+/// Samples along each side of a pixel of the plain grids.
 const GRIDS: [u32; 7] = [2, 3, 4, 6, 8, 12, 16];
-/// Contrasts and depths of the adaptive samplings beside the usual one.
+/// Contrasts and depths of the adaptive samplings other than the default one.
 const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03, 3)];
 
-/// The plain samplings, then the adaptive ones beside the usual one.
+/// The plain samplings, then the adaptive ones other than the default.
 fn ladder() -> impl Iterator<Item = Sampling> {
     std::iter::once(Sampling::Centres)
         .chain(GRIDS.map(Sampling::Grid))
         .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }))
 }
 
-/// All samplings that are compared: grids by their size, the usual one last.
+/// All samplings that are compared: grids by size, the default one last.
 pub fn samplings() -> impl Iterator<Item = Sampling> {
     ladder().chain([Sampling::ADAPTIVE])
 }
 
-/// The ways of tracing `scene`, in `width × height` pixels: the plan's choice first, the scene's own
-/// settings if they differ, the way of the original program, what differs from the plan
-/// in one thing, and the ladder of samplings.
+/// The ways of tracing `scene` in `width × height` pixels: the plan's choice first; the scene's own settings, if they
+/// differ; the original program; everything that differs from the plan's choice in one setting; and the ladder of
+/// samplings.
 pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     let plan = Candidate {
         name: "the plan".to_owned(),
@@ -127,7 +127,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         change(&mut candidate.render);
         all.push(candidate);
     };
-    // Every method of every setting but the plan's; of samplings there is a ladder below.
+    // Every method of every setting other than the plan's; samplings follow in the ladder below.
     for (name, render) in neighbours(&plan.render) {
         let family = if render.precision == plan.render.precision {
             Family::Formulas
@@ -173,7 +173,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
     all
 }
 
-/// An independent engine, beside all these.
+/// An independent engine, for comparison.
 pub fn povray(scene: &Scene, width: u32, height: u32) -> Candidate {
     Candidate {
         name: POVRAY.to_owned(),
@@ -190,7 +190,7 @@ pub fn povray(scene: &Scene, width: u32, height: u32) -> Candidate {
     }
 }
 
-/// Settings that differ from these in one formula, with their names.
+/// Settings that differ from `render` in one formula, with their names.
 fn neighbours(render: &Render) -> Vec<(String, Render)> {
     let mut list = MethodList(Vec::new());
     render.clone().visit_settings(&mut list);
@@ -206,7 +206,7 @@ fn neighbours(render: &Render) -> Vec<(String, Render)> {
     neighbours.collect()
 }
 
-/// Every method of every setting but the defaults.
+/// Every method of every setting except the defaults.
 struct MethodList(Vec<(Setting, &'static str)>);
 
 impl VisitSetting for MethodList {
@@ -217,7 +217,7 @@ impl VisitSetting for MethodList {
 }
 
 impl Candidate {
-    /// What is traced, before it is scaled up.
+    /// The request for the picture that is traced, before it is scaled up.
     pub fn request(&self, scene: &Scene) -> RenderRequest {
         let side = |side: u32| side.div_ceil(self.upscale);
         let (width, height) = (side(self.render.width), side(self.render.height));
@@ -235,7 +235,7 @@ impl Candidate {
         }
     }
 
-    /// Its settings in the words of the command line.
+    /// Its settings, in the words of the command line.
     pub fn words(&self) -> String {
         if self.family == Family::Referee {
             return "one ray per pixel, double precision; the time it takes to start and to read the scene is left out".to_owned();
@@ -263,7 +263,8 @@ mod tests {
     use crate::scene::{Accelerator, check};
     use crate::trace::{RenderControl, Tracer};
 
-    /// Rays of all kinds in one picture with one sample in each pixel: where an edge is ragged, clean ones take more.
+    /// Rays of all kinds in a picture with one sample per pixel: with antialiasing, ragged edges would take more
+    /// rays.
     fn rays(scene: &Scene, candidate: &Candidate) -> u64 {
         let request = RenderRequest {
             sampling: Sampling::Centres,

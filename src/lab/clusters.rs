@@ -1,4 +1,4 @@
-//! Ways of tracing that are one dot on the chart: nothing measured tells them apart.
+//! Groups ways of tracing that no measurement tells apart, each of which is one dot on the chart.
 
 use super::candidates::{Candidate, Family};
 use super::measure::ErrorMetrics;
@@ -6,15 +6,15 @@ use super::pareto_front::front;
 use super::study::{Measurement, Study, Timing};
 use crate::plan::Model;
 
-/// Errors that differ by less are equal.
+/// Relative difference of errors below which they count as equal.
 const SAME_ERROR: f64 = 0.02;
-/// Rays of a pixel that differ by less are equal.
+/// Relative difference of rays per pixel below which they count as equal.
 const SAME_RAYS: f64 = 0.02;
-/// Times that differ by less are equal, however little the runs differ.
+/// Relative difference of times below which they count as equal, even if the runs vary less.
 const SAME_TIME: f64 = 0.08;
 
 impl Study {
-    /// Milliseconds and RMSE of each dot, as far as they are known; NaN elsewhere.
+    /// Milliseconds and RMSE of each measurement; NaN where they are not known yet.
     pub fn costs(&self) -> Vec<(f64, f64)> {
         let cost = |dot: &Measurement| dot.timing().map_or(f64::NAN, |timing| timing.median);
         let error = |dot: &Measurement| dot.metrics.map_or(f64::NAN, |metrics| metrics.rmse);
@@ -24,7 +24,7 @@ impl Study {
             .collect()
     }
 
-    /// The same, without the times of those that are doubtful: they carry no front.
+    /// The same, with NaN for doubtful times, which must not define a front.
     pub fn certain_costs(&self) -> Vec<(f64, f64)> {
         let mut costs = self.costs();
         for (cost, dot) in costs.iter_mut().zip(&self.measurements) {
@@ -36,15 +36,15 @@ impl Study {
     }
 }
 
-/// Groups of measurements, by their places, that differ neither in time nor in error by more than the runs of
-/// each do, nor in the rays that they take; certain ones and doubtful ones apart. The first of a group is the first of
-/// the list. What is not fully measured is in no group.
+/// Groups measurements, given by their indices, with equal errors and rays per pixel, whose times differ by no more
+/// than their runs do. Certain and doubtful ones are grouped separately. Indices in a group are ascending. Incomplete
+/// measurements are in no group.
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
     let mut clusters: Vec<((Timing, ErrorMetrics), Vec<usize>)> = Vec::new();
     for (index, dot) in study.measurements.iter().enumerate() {
         let Some(figures) = known(dot) else { continue };
-        // One that is certain does not stand behind one that is not.
+        // A certain measurement must not be represented by a doubtful one.
         let is_like = |index: usize| {
             let other = &study.measurements[index];
             let (most, least) = (
@@ -64,13 +64,13 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
     clusters.into_iter().map(|(_, cluster)| cluster).collect()
 }
 
-/// The places of the ways that nothing beats: those that nothing measured tells from another one are beaten by the
-/// first of them, and doubtful ones beat nobody.
+/// Returns the indices of the Pareto-optimal ways. Only the first way of each group is considered, and doubtful ones
+/// are ignored.
 pub fn front_of(study: &Study) -> Vec<usize> {
     front(&costs_of_dots(study))
 }
 
-/// Milliseconds and RMSE of the first way of each dot; NaN for the others, and where they are doubtful.
+/// Milliseconds and RMSE of the first way of each group; NaN for the others, and for doubtful ones.
 fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     let all = study.certain_costs();
     let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
@@ -80,9 +80,9 @@ fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     costs
 }
 
-/// Milliseconds and RMSE of the first way of each dot that can be taken for a scene: of no other program, no smaller
-/// picture, and no way in which less is spared or other things are seen, which are there to be looked at. NaN for the
-/// others, and where they are doubtful.
+/// Milliseconds and RMSE of the first way of each group that can be chosen for a scene; NaN for the others, and for
+/// doubtful ones. Excluded are other engines, smaller pictures, and models that skip less or show other things, which
+/// serve for comparison only.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
     let mut costs = costs_of_dots(study);
     for (cost, dot) in costs.iter_mut().zip(&study.measurements) {
@@ -100,7 +100,7 @@ pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
 }
 
 fn is_same((a, c): (Timing, ErrorMetrics), (b, d): (Timing, ErrorMetrics)) -> bool {
-    // Half of the distance of the quartiles is what a median may well be off by.
+    // A median may well be off by half of the interquartile range.
     let apart = (a.median / b.median).ln().abs();
     let spread = f64::midpoint(a.spread, b.spread).max(SAME_TIME);
     let off = (c.rmse - d.rmse).abs();
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    /// A study in which only these were measured: milliseconds of three runs, and the error.
+    /// A study with only these measurements: milliseconds of three runs, and the error.
     fn study(figures: &[([f64; 3], f64)]) -> Study {
         let mut study = Study::new(Arc::new(Scene::demo()), 8, 8);
         study.measurements.truncate(figures.len());
@@ -141,14 +141,14 @@ mod tests {
     fn what_cannot_be_told_apart_is_one_and_stands_on_the_front_once() {
         let study = study(&[
             ([10.0, 10.1, 10.2], 1e-3),
-            // As the first, within what the runs differ by, and slightly faster and closer.
+            // Like the first within the variation of the runs, although slightly faster and closer.
             ([9.9, 10.0, 10.1], 0.985e-3),
-            // Closer, and doubtful: its runs differ by more than a fifth.
+            // Closer, but doubtful: its runs differ by more than a fifth.
             ([2.0, 3.0, 4.0], 1e-4),
             ([20.0, 20.1, 20.2], 5e-4),
-            // Slower and farther off.
+            // Slower, with a larger error.
             ([30.0, 30.1, 30.2], 2e-3),
-            // As fast as the fourth, perhaps.
+            // Possibly as fast as the fourth.
             ([12.0, 20.0, 29.0], 5e-4),
         ]);
         let apart = [vec![0, 1], vec![2], vec![3], vec![4], vec![5]];

@@ -1,7 +1,6 @@
-//! Why a pixel has its colour: every term of the shading sum as a number, mirror by mirror.
+//! Explains the colour of a pixel: every term of the shading sum as a number, reflection by reflection.
 //!
-//! Written plainly and apart from the tracer, one ray at a time in double precision; a test holds both against
-//! each other.
+//! Written plainly and independently of the tracer, one ray at a time in double precision; a test compares the two.
 
 use glam::DVec3;
 
@@ -12,57 +11,59 @@ use crate::scene::{
 };
 use crate::trace::RenderControl;
 
-/// Roundings of the largest coordinate by which a ray must have left a surface to meet it again.
+/// Least distance of a hit from the origin of its ray, relative to the largest coordinate: closer hits are the
+/// surface that the ray starts on, found again because of rounding.
 const LEFT: f64 = 1e-10;
 
-/// Share of the coordinates within which two hits are on one surface: what single precision cannot tell apart.
+/// Relative distance within which two hits are on the same surface: single precision cannot tell them apart.
 const ONE_SURFACE: f64 = 1e-6;
 
-/// What a ray sees, and why.
+/// What a ray hits, with its colour.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Explanation {
-    /// Nothing: the background's colour, linear 0–1.
+    /// Nothing: the colour of the background, linear 0–1.
     Sky(DVec3),
-    /// The marker of a light of this name, in its full ambient colour.
+    /// The marker of the light with this name, in its full ambient colour.
     Marker(String, DVec3),
     /// A surface.
     Surface(Box<ShadingTerms>),
 }
 
-/// A place on an object, and the terms that add up to its colour: linear, 0–1 each.
+/// A point on an object, and the terms that add up to its colour: linear, 0–1 each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadingTerms {
     /// The object's name.
     pub object: String,
-    /// The name of its color pack.
+    /// The name of the color pack.
     pub pack: String,
-    /// Where it is, in world units.
+    /// The position of the point, in world units.
     pub point: DVec3,
-    /// The unit normal, turned to the viewer.
+    /// The unit normal, facing the viewer.
     pub normal: DVec3,
-    /// Whether it is a mesh whose faces the picture shades as one curved surface: the normal here is that of the
-    /// flat face, and so are the terms.
+    /// Whether it is a mesh whose faces the tracer shades as one curved surface. The normal and the terms here are
+    /// those of the flat face.
     pub is_smooth: bool,
-    /// How far from where the ray set out, in world units.
+    /// Distance from the origin of the ray, in world units.
     pub distance: f64,
     /// Ambient intensity · ambient colour.
     pub ambient: DVec3,
-    /// What each light that shines adds.
+    /// The contribution of each light that shines.
     pub lights: Vec<LightTerm>,
-    /// Σ intensity · specular colour, and what is seen in the mirror; `None` if it is none.
+    /// The filter, Σ intensity · specular colour, and what is seen in the mirror; `None` if it does not reflect.
     pub mirror: Option<(DVec3, Explanation)>,
 }
 
-/// What a light adds.
+/// The contribution of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightTerm {
     /// The light's name.
     pub light: String,
     /// Its intensity, 0–1.
     pub intensity: f64,
-    /// Cosine of the angle between the normal and the light; it lights nothing where that is negative.
+    /// Cosine of the angle between the normal and the direction of the light; if it is negative, the light adds
+    /// nothing.
     pub cosine: f64,
-    /// The object that stands before it, if one does.
+    /// The name of the object that shadows the point, if there is one.
     pub blocker: Option<String>,
     /// Intensity · diffuse colour · cosine.
     pub diffuse: DVec3,
@@ -93,14 +94,14 @@ impl ShadingTerms {
     }
 }
 
-/// What a ray with a unit direction sees in a scene, which must pass [`crate::scene::check`]. The faces of
-/// meshes are flat here.
+/// Explains what a ray with a unit direction sees in a scene, which must pass [`crate::scene::check`]. Faces of
+/// meshes are shaded flat.
 pub fn explain(scene: &Scene, origin: DVec3, direction: DVec3) -> Explanation {
     explain_ray(scene, (origin, direction), 0)
 }
 
-/// The colour that the picture has where this ray goes, linear 0–1, by the formulas and in the precision that the scene
-/// has chosen, without what clean edges mix into it; `None` where nothing is drawn.
+/// The colour that the tracer draws for this ray, linear 0–1, with the methods and the precision of the scene, but
+/// without antialiasing; `None` if nothing is drawn.
 pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
     let camera = Camera {
         position: origin,
@@ -120,8 +121,8 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
     Some(linear(DVec3::new(red, green, blue)))
 }
 
-/// The object that a ray with a unit direction meets first, by its place in the scene's list, and how far away; nothing
-/// if that is a light's marker. Of several in one surface it is any.
+/// The first object that a ray with a unit direction hits, as an index into the scene's list, and its distance;
+/// `None` if a light's marker comes first. Of several objects in one surface, any may be returned.
 pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let met = nearest(scene, origin, direction)?;
     match met.what {
@@ -130,7 +131,7 @@ pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usiz
     }
 }
 
-/// Something that a ray has met.
+/// A hit of a ray.
 struct RayHit<'a> {
     t: f64,
     normal: DVec3,
@@ -189,8 +190,8 @@ fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32)
     }))
 }
 
-/// Phong's model with Blinn's half vector: "Models of light reflection for computer synthesized pictures",
-/// SIGGRAPH 1977.
+/// The contribution of a light by Phong's model with Blinn's half vector: "Models of light reflection for computer
+/// synthesized pictures", SIGGRAPH 1977.
 fn share(
     scene: &Scene,
     pack: &ColorPack,
@@ -242,7 +243,8 @@ fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>>
         .min_by(|one, other| one.t.total_cmp(&other.t))
 }
 
-/// What lies in the surface that is met and comes before it in the list: that is seen.
+/// The hit with an object that is in the same surface and earlier in the list, if there is one: the earlier object is
+/// visible.
 fn in_its_place<'a>(
     scene: &'a Scene,
     met: &RayHit<'a>,
@@ -257,7 +259,7 @@ fn in_its_place<'a>(
     let mut earlier = pairs.filter(|pair| pair.later == later);
     earlier.find_map(|pair| {
         let (t, normal) = meet(&scene.objects[pair.earlier].shape, origin, direction)?;
-        // A mesh may be met elsewhere.
+        // The ray may hit a mesh somewhere else than in the shared surface.
         let across = (t - met.t).abs() * normal.dot(direction).abs();
         if across > ONE_SURFACE * (met.t + (origin - centre).length()) {
             return None;
@@ -267,7 +269,7 @@ fn in_its_place<'a>(
     })
 }
 
-/// The name of something that stands between a point and a light.
+/// The name of an object that is between a point and a light.
 fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option<String> {
     let mut objects = scene.visible_objects();
     let found = objects.find(|object| {
@@ -277,7 +279,8 @@ fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option
     found.map(|object| object.name.clone())
 }
 
-/// How far along a ray with a unit direction a shape is, and its unit normal there: that of a ball points outwards.
+/// The distance at which a ray with a unit direction hits a shape, and the unit normal there: that of a ball points
+/// outwards.
 pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     match shape {
         Shape::Sphere(ball) => meet_ball(ball.center, ball.radius, origin, direction),
@@ -296,7 +299,7 @@ pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec
     }
 }
 
-/// What is met no sooner than the rounding of where the ray sets out.
+/// Least distance of a hit from `origin`, to allow for rounding.
 fn left(origin: DVec3) -> f64 {
     LEFT * (1.0 + origin.abs().max_element())
 }

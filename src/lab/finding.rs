@@ -1,4 +1,4 @@
-//! What a study has found, in a sentence.
+//! Summarises the result of a study in a sentence.
 
 use super::clusters::front_of;
 use super::measure::{EIGHT_BIT_FLOOR, decibels};
@@ -6,10 +6,10 @@ use super::pareto_front::cheapest_within;
 use super::study::Study;
 use crate::words::{counted, short_number};
 
-/// How much longer the chosen way must take than another one that is as close to be called beaten.
+/// Factor by which the default must be slower than another way that is as close, to count as beaten.
 const BEATEN: f64 = 1.1;
 
-/// What a study of a scene of this name has found about the plan's choice.
+/// The result of a study of the scene called `name` about the plan's choice.
 pub fn finding(study: &Study, name: &str) -> String {
     let costs = study.certain_costs();
     let own = study.costs().first().copied();
@@ -18,7 +18,7 @@ pub fn finding(study: &Study, name: &str) -> String {
     };
     let within = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
     let quartiles = |index: usize| study.measurements[index].timing().map(|t| t.quartiles);
-    // Its slower runs against the faster ones of the default: a busy machine beats nobody.
+    // Compares its slow quartile with the fast one of the default, so that a busy machine does not decide.
     let is_doubtful = study.measurements[0].is_doubtful();
     let is_certain = |index: usize| match (quartiles(index), quartiles(0)) {
         (Some((_, slow)), Some((fast, _))) => !is_doubtful && slow * BEATEN < fast,

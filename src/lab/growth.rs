@@ -1,5 +1,5 @@
-//! How the time of a picture grows with what is in the scene: a mesh of more and more faces, and more and
-//! more balls, over a floor and lit from two sides.
+//! Measures how the time of a picture grows with the content of the scene: a mesh of more and more faces, and more
+//! and more balls, over a floor and lit from two sides.
 
 use std::f64::consts::{PI, TAU};
 use std::time::Instant;
@@ -15,15 +15,15 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Sphere};
 use crate::trace::{Pass, RenderControl, Threads, Tracer};
 
-/// How many primitives there are, at most a million.
+/// Numbers of primitives that are measured, up to a million.
 const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
-/// Pictures of each scene, of which the fastest counts.
+/// Runs for each scene, of which the fastest counts.
 const ROUNDS: usize = 3;
 
-/// Irrational steps through a cube that fill it evenly: powers of the root of x⁴ = x + 1.
+/// Irrational step sizes along the axes of a cube that fill it evenly: powers of the root of x⁴ = x + 1.
 const STEPS: [f64; 3] = [0.819_172_513, 0.671_043_606, 0.549_700_477];
 
-/// What fills a scene.
+/// The content of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Crowd {
@@ -37,55 +37,55 @@ pub enum Crowd {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Way {
-    /// One sample in each pixel.
+    /// One sample per pixel.
     Plain,
     /// With clean edges.
     Clean,
-    /// By POV-Ray, one sample in each pixel.
+    /// By POV-Ray, one sample per pixel.
     Povray,
-    /// By Embree, one sample in each pixel.
+    /// By Embree, one sample per pixel.
     Embree,
 }
 
-/// A picture that was measured.
+/// A measured picture.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Cost {
-    /// What filled its scene.
+    /// The content of the scene.
     pub crowd: Crowd,
-    /// How it was made.
+    /// How the picture was made.
     pub way: Way,
-    /// How many primitives there were.
+    /// Number of primitives.
     pub primitives: u32,
-    /// Milliseconds, planning not counted: the fastest of a few.
+    /// Milliseconds of the fastest run, without planning.
     pub ms: f64,
-    /// Milliseconds of planning, once; nothing where it is not known.
+    /// Milliseconds of planning, in one run; `None` if unknown.
     pub plan_ms: Option<f64>,
 }
 
-/// Draws a scene as another engine does, one sample in each pixel: the milliseconds that it took, or why it cannot.
+/// Draws a scene with another engine, one sample per pixel; returns the milliseconds that took, or why it failed.
 pub type Engine = fn(&Scene) -> Result<f64, String>;
 
-/// Who makes a picture.
+/// The engine that makes a picture.
 #[derive(Clone, Copy, Debug)]
 enum Maker {
     Glint(Sampling),
     Other(Engine),
 }
 
-/// Measures every crowd, one picture after the other, on the current rayon pool.
+/// Measures all scenes, one picture after the other, on the current rayon pool.
 #[derive(Debug)]
 pub struct Growth {
     side: u32,
     most: u32,
     makers: Vec<(Way, Maker)>,
-    /// What is measured so far.
+    /// The results so far.
     pub costs: Vec<Cost>,
-    /// Why engines are left out.
+    /// Why engines were left out.
     pub obstacles: Vec<String>,
 }
 
 impl Growth {
-    /// Pictures of so many by so many pixels, of scenes of at most `most` primitives.
+    /// Makes pictures of `side` × `side` pixels, of scenes with at most `most` primitives.
     pub fn new(side: u32, most: u32) -> Self {
         Self {
             side,
@@ -99,12 +99,12 @@ impl Growth {
         }
     }
 
-    /// The same, and POV-Ray beside it.
+    /// Adds POV-Ray to the comparison.
     pub fn with_povray(self) -> Self {
         self.with(Way::Povray, povray)
     }
 
-    /// The same, and another engine beside it.
+    /// Adds another engine to the comparison.
     pub fn with(mut self, way: Way, engine: Engine) -> Self {
         self.makers.push((way, Maker::Other(engine)));
         self
@@ -115,7 +115,7 @@ impl Growth {
         self.side
     }
 
-    /// Every picture, those of other engines last: they are left out when one turns out not to be there.
+    /// All pictures in the order of measurement. Other engines come last; one that fails is left out.
     fn cases(&self) -> impl Iterator<Item = (&(Way, Maker), Crowd, u32)> {
         let crowds = |made| [(made, Crowd::Mesh), (made, Crowd::Balls)];
         self.makers
@@ -128,7 +128,7 @@ impl Growth {
             })
     }
 
-    /// Measures the next picture, or leaves an engine out that cannot. Whether there was one.
+    /// Measures the next picture, or leaves out an engine that fails. Returns whether there was one to measure.
     pub fn step(&mut self) -> bool {
         let Some((&(way, maker), crowd, count)) = self.cases().nth(self.costs.len()) else {
             return false;
@@ -161,7 +161,7 @@ impl Growth {
         true
     }
 
-    /// Share of the pictures that are measured, 0–1.
+    /// Share of the pictures that have been measured, 0–1.
     pub fn progress(&self) -> f64 {
         self.costs.len() as f64 / self.cases().count().max(1) as f64
     }
@@ -176,7 +176,7 @@ impl Growth {
 }
 
 impl Cost {
-    /// What it is a cost of.
+    /// A short description of what was measured.
     pub fn name(&self) -> String {
         let crowd = match self.crowd {
             Crowd::Mesh => "a mesh",
@@ -193,16 +193,16 @@ impl Cost {
 }
 
 impl Crowd {
-    /// The most that are measured.
+    /// Most primitives that are measured.
     fn most(self) -> u32 {
         match self {
             Self::Mesh => 1_000_000,
-            // Objects, each with a name: more of them say more of that than of tracing.
+            // Each ball is an object with a name: with more of them, that overhead would dominate tracing.
             Self::Balls => 100_000,
         }
     }
 
-    /// A scene of so many of them, or about so many.
+    /// A scene with exactly or roughly this number of primitives.
     pub fn scene(self, count: u32) -> Scene {
         match self {
             Self::Mesh => mesh(count),
@@ -211,7 +211,7 @@ impl Crowd {
     }
 }
 
-/// Milliseconds of a picture, the fastest of a few, and of its planning.
+/// Milliseconds of the fastest run, and of planning.
 fn own(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
     let request = RenderRequest {
         sampling,
@@ -221,11 +221,11 @@ fn own(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
     let since = Instant::now();
     let tracer = Tracer::planned(scene, &request, &mut planner);
     let plan_ms = since.elapsed().as_secs_f64() * 1e3;
-    // Memory that the system has given before: else small scenes cost as much as getting it.
+    // Allocated once for all runs: otherwise obtaining memory would dominate small scenes.
     let mut light: Vec<LinearRgb> = vec![[0.0; 3]; tracer.width() * tracer.height()];
     let time = |_| {
         let since = Instant::now();
-        // Nobody stops it.
+        // Nothing stops it.
         let _ = tracer.pass(&mut light, Pass::Whole, &RenderControl::default());
         since.elapsed().as_secs_f64() * 1e3
     };
@@ -273,7 +273,7 @@ fn stage() -> Scene {
     scene
 }
 
-/// A ball with bumps, of about so many faces.
+/// A ball with bumps that has roughly this number of faces.
 fn mesh(faces: u32) -> Scene {
     let rings = (f64::from(faces) / 4.0).sqrt().round().max(2.0) as u32;
     let columns = 2 * rings;
@@ -314,12 +314,13 @@ fn mesh(faces: u32) -> Scene {
     scene
 }
 
-/// Balls in a cube, the smaller the more there are: together they always cover about as much.
+/// Balls in a cube. The more there are, the smaller they are, so that together they always cover roughly the same
+/// area.
 fn balls(count: u32) -> Scene {
     let mut scene = stage();
     let radius = 60.0 / f64::from(count).sqrt();
     for number in 0..count {
-        // Additive recurrence: no two of the axes run in step.
+        // Additive recurrence with a different irrational step for each axis.
         let share = |axis: usize| (f64::from(number) * STEPS[axis]).fract();
         let center = DVec3::new(
             (share(0) - 0.5) * 150.0,

@@ -1,4 +1,4 @@
-//! Studies kept on disk: what was measured of a scene is there when it is opened again.
+//! Studies stored on disk, so that they need not be measured again when a scene is reopened.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,26 +13,26 @@ use crate::files::{make_folder, remove_oldest};
 use crate::image::{Film, Format, Image};
 use crate::scene::{Render, Scene, read_text};
 
-/// So many studies are kept, each in two files; older ones are removed.
+/// Most studies that are stored, each in two files; older ones are removed.
 const MOST: usize = 24;
 
-/// What is written of a study, beside its pictures.
+/// A study as it is stored, except its pictures.
 #[derive(Serialize, Deserialize)]
 struct KeptStudy {
-    /// What was measured on: elsewhere, times are others.
+    /// The machine that it was measured on: times are not valid on another one.
     machine: String,
     width: u32,
     height: u32,
-    /// What the errors are measured against: with another, they are others.
+    /// Samples per pixel of the reference: errors are not valid for another one.
     reference_samples: u32,
     reference_rmse: f64,
-    /// The scene's own settings, if they were measured as a way of their own.
+    /// The scene's own settings, if they were measured as a separate way.
     #[serde(default)]
     own: Option<Render>,
     dots: Vec<KeptDot>,
 }
 
-/// What is written of a dot.
+/// A measurement as it is stored.
 #[derive(Serialize, Deserialize)]
 struct KeptDot {
     name: String,
@@ -44,7 +44,8 @@ struct KeptDot {
     lanes: String,
 }
 
-/// The files of a scene's study. Settings do not count: they are what is compared.
+/// The files for the study of a scene. Their names do not depend on the methods that the scene chooses, because those
+/// are what is compared.
 fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
     let bare = Scene {
         render: Render {
@@ -60,16 +61,16 @@ fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
     Some((file("ron"), file("png")))
 }
 
-/// The scene's own settings, if they are a way of their own: later they may be others.
+/// The scene's own settings, if they were measured as a separate way. They may change later.
 fn own_of(study: &Study) -> Option<Render> {
     let mut dots = study.measurements.iter();
     let own = dots.find(|dot| dot.candidate.name == OWN)?;
     Some(own.candidate.render.clone())
 }
 
-/// Writes a study that is done, its pictures below each other. One that cannot be kept is measured again.
+/// Stores a complete study, with its pictures stacked in one image. If that fails, it is measured again another time.
 pub fn keep(study: &Study, machine: &str, folder: &Path) {
-    // Nobody waits for it, and nothing is lost without.
+    // The error is ignored: nothing waits for the files, and nothing is lost without them.
     let _ = try_keep(study, machine, folder);
 }
 
@@ -109,7 +110,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
     Some(())
 }
 
-/// What was measured of this scene before, on this machine; `None` if nothing was, or not in the same ways.
+/// Loads the study of this scene on this machine; `None` if there is none, or if other ways were measured.
 pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Option<Study> {
     let (figures, pictures) = place(folder, scene)?;
     let kept: KeptStudy = ron::from_str(&read_text(&figures).ok()?).ok()?;
@@ -192,7 +193,7 @@ mod tests {
         let mut other = Scene::demo();
         other.ambient_intensity += 0.01;
         assert!(kept(&Arc::new(other), 16, "here", &folder).is_none());
-        // Settings of its own are there again as long as the scene has them.
+        // The study of the scene's own settings is found again as long as the scene has them.
         let mut own = Scene::clone(&scene);
         own.render.sphere = SphereMethod::Classic;
         own.render.antialias = Sampling::Grid(3);

@@ -1,39 +1,39 @@
-//! How far a picture is off.
+//! Errors of pictures.
 
 use crate::image::{Image, LinearImage, LinearRgb};
 use crate::trace::{Pass, Rays, RenderControl, Tracer};
 
-/// The error that rounding to 8 bits leaves in the best of pictures: 1 / (255·√12), as a root mean
-/// square of linear colours from 0 to 1.
+/// The error that rounding to 8 bits leaves in even the best picture: 1 / (255·√12), as the root mean square over
+/// linear colours from 0 to 1.
 pub const EIGHT_BIT_FLOOR: f64 = 1.0 / (255.0 * 3.464_101_615_137_754_4);
 
-/// A channel that is off by more than this can be seen.
+/// Error of a channel above which it is visible.
 const VISIBLE: f32 = 4.0 / 255.0;
 
-/// How far a picture is off, over all channels of all pixels; colours are linear, 0–1.
+/// The error of a picture over all channels of all pixels; colours are linear, 0–1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorMetrics {
-    /// Root of the mean square.
+    /// Root mean square error.
     pub rmse: f64,
-    /// The worst channel.
+    /// Largest error of a channel.
     pub max: f64,
-    /// Share of pixels with a channel that is off by more than 4/255.
+    /// Share of pixels with a channel whose error is above 4/255.
     pub visible: f64,
 }
 
 impl ErrorMetrics {
-    /// Peak signal to noise in decibels: -20·log₁₀(RMSE); infinity for equal pictures.
+    /// Peak signal-to-noise ratio in decibels: -20·log₁₀(RMSE); infinite for equal pictures.
     pub fn psnr(self) -> f64 {
         decibels(self.rmse)
     }
 }
 
-/// A mean error as peak signal to noise in decibels, where 1 is white.
+/// An RMSE as peak signal-to-noise ratio in decibels, where white is 1.
 pub fn decibels(error: f64) -> f64 {
     -20.0 * error.log10()
 }
 
-/// How far `picture` is off `reference`, which is as large.
+/// The error of `picture` against `reference`, which has the same size.
 pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetrics {
     let (mut squares, mut max, mut visible) = (0.0, 0.0_f32, 0_usize);
     for (a, b) in picture.iter().zip(reference) {
@@ -54,7 +54,7 @@ pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetric
     }
 }
 
-/// Half of each of two pictures of the same size.
+/// The mean of two pictures of the same size.
 pub fn mean(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
     let pixels = first.iter().zip(second);
     pixels
@@ -62,14 +62,14 @@ pub fn mean(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
         .collect()
 }
 
-/// Traces a picture as linear light on the current rayon pool; `None` if `control` said stop.
+/// Traces a picture as linear light on the current rayon pool; `None` if `control` stopped it.
 pub fn trace_light(tracer: &Tracer, control: &RenderControl) -> Option<(Vec<LinearRgb>, Rays)> {
     let mut pixels = vec![[0.0; 3]; tracer.width() * tracer.height()];
     let rays = tracer.pass(&mut pixels, Pass::Whole, control)?;
     Some((pixels, rays))
 }
 
-/// A picture in another size: between the centres of its pixels, colours change evenly.
+/// Scales a picture by bilinear interpolation between the centres of its pixels.
 pub fn scaled(
     from: &[LinearRgb],
     (width, height): (usize, usize),

@@ -1,7 +1,7 @@
-//! Ways of tracing one picture held against each other: what each costs, and how far it is off.
+//! Compares ways of tracing one picture: what each costs, and how large its error is.
 //!
-//! A new way is a line in a list of [`crate::scene::Method`] or in `candidates.rs`; measuring, chart
-//! and tests pick it up.
+//! A new way is a line in a list of [`crate::scene::Method`] or in `candidates.rs`; measuring, chart and tests
+//! include it automatically.
 
 mod candidates;
 

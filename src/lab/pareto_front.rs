@@ -1,11 +1,10 @@
-//! Which dots of a chart are worth having.
+//! The Pareto front of cost and error.
 
-/// An error must fall to this share to be worth a higher cost: less would be gone in the next
-/// measuring.
+/// Share to which the error must fall to justify a higher cost: smaller gains would vanish in the next measurement.
 const WORTH: f64 = 0.99;
 
-/// The places of the dots (cost, error), by cost, that show clearly less error than every cheaper
-/// one. Dots with a number that is not finite are on no front.
+/// Returns the indices of the dots (cost, error), by cost, whose error is clearly less than that of every cheaper
+/// one. Dots with a number that is not finite are never on the front.
 pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
     let finite =
         |&index: &usize| measurements[index].0.is_finite() && measurements[index].1.is_finite();
@@ -25,7 +24,7 @@ pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
     indices
 }
 
-/// The cheapest dot (cost, error) within both bounds, if there is one.
+/// Returns the index of the cheapest dot (cost, error) within both bounds, if there is one.
 pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
     let fits = |&index: &usize| measurements[index].1 <= error && measurements[index].0 <= cost;
     let fitting = (0..measurements.len()).filter(fits);
@@ -35,8 +34,8 @@ pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Op
     })
 }
 
-/// The closest dot (cost, error) of at most this cost, if there is one: the cheapest within an error on the chart
-/// turned over.
+/// Returns the index of the dot (cost, error) with the least error among those of at most this cost:
+/// [`cheapest_within`] with the axes swapped.
 pub fn closest_within(measurements: &[(f64, f64)], cost: f64) -> Option<usize> {
     let turned: Vec<(f64, f64)> = measurements.iter().map(|&(c, e)| (e, c)).collect();
     cheapest_within(&turned, cost, f64::INFINITY)

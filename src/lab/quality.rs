@@ -1,4 +1,4 @@
-//! Which sampling a picture needs: the cheapest within an error, or the closest within a time, as measured on
+//! Chooses the sampling for a picture: the cheapest within an error, or the closest within a time, as measured on
 //! strips of the picture itself.
 
 use std::time::{Duration, Instant};
@@ -11,44 +11,45 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
 
-/// Samples along each side of a pixel of what errors are measured against: a number that has none of the samples of
-/// even grids among its own.
+/// Samples along each side of a pixel in the reference for errors: with this number, none of its samples coincides
+/// with one of an even grid.
 const REFERENCE_GRID: u32 = 23;
-/// Rows of a strip.
+/// Rows per strip.
 const STRIP: usize = 8;
-/// About as many pixels are measured: few enough to take a second or so, many enough to meet what there is to see.
+/// Number of pixels, roughly, that are measured: few enough to take a second or so, many enough to cover the content
+/// of the picture.
 const PIXELS: usize = 1 << 17;
-/// So many strips there are at least.
+/// Least number of strips.
 const FEWEST: usize = 4;
 
-/// What a picture is to keep to.
+/// The limit that a picture must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The cheapest whose error, a root mean square of linear colours from 0 to 1, is at most this.
+    /// The cheapest whose error, the root mean square over linear colours from 0 to 1, is at most this.
     Within(f64),
-    /// The closest that takes at most so long.
+    /// The closest that takes at most this time.
     Budget(Duration),
 }
 
 /// A sampling that was chosen for a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// What was asked for.
+    /// The limit that was given.
     pub goal: Goal,
-    /// What was chosen.
+    /// The chosen sampling.
     pub sampling: Sampling,
     /// Its error, root mean square, 0–1.
     pub rmse: f64,
-    /// How long the whole picture will take with it.
+    /// Estimated time of the whole picture.
     pub time: Duration,
-    /// How many samplings were measured.
+    /// Number of samplings that were measured.
     pub tried: usize,
-    /// Whether it keeps to what was asked for; else it comes closest to that.
+    /// Whether the limit is kept; otherwise the choice is the one nearest to it.
     pub is_met: bool,
 }
 
 impl Choice {
-    /// What was chosen, and why.
+    /// Describes the choice and its reason.
     pub fn words(&self) -> String {
         let level = |rmse: f64| format!("{:.1} dB", decibels(rmse));
         let millis = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
@@ -72,8 +73,8 @@ impl Choice {
     }
 }
 
-/// Measures samplings on strips of a picture, on the current rayon pool, and chooses one. `None` if `control` said
-/// stop.
+/// Measures samplings on strips of a picture, on the current rayon pool, and chooses one. `None` if `control` stopped
+/// it.
 pub fn choose(
     scene: &Scene,
     request: &RenderRequest,
@@ -83,11 +84,11 @@ pub fn choose(
 ) -> Option<Choice> {
     let mut strips = Strips::new(scene, request, planner, control);
     let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
-    // A mesh is made ready once, for all of them; whoever traces the picture afterwards waits for that again.
+    // Meshes are prepared once, for all samplings, but whoever traces the picture has to wait for that again.
     let ready = first.planned;
     let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();
     for sampling in samplings() {
-        // Grids come by their size: beyond one that is close enough, or takes too long, each takes longer.
+        // Grids come in order of size: after one that is close enough, or too slow, all others take longer.
         let is_enough = measured.iter().any(|(other, (time, error))| {
             matches!(other, Sampling::Grid(_))
                 && match goal {
@@ -100,7 +101,7 @@ pub fn choose(
         }
         let (light, first) = strips.trace(sampling)?;
         let (_, second) = strips.trace(sampling)?;
-        // Nothing makes a run faster than it is.
+        // The faster of two runs counts, because disturbances only make a run slower.
         let planned = first.planned.min(second.planned).max(ready);
         let time = planned + first.traced.min(second.traced);
         measured.push((sampling, (time, difference(&light, &reference).rmse)));
@@ -108,7 +109,7 @@ pub fn choose(
     pick(goal, &measured)
 }
 
-/// The one of the measured samplings (time in s, error) that is asked for; `None` of none.
+/// Chooses among the measured samplings (time in s, error); `None` if there are none.
 fn pick(goal: Goal, measured: &[(Sampling, (f64, f64))]) -> Option<Choice> {
     let costs: Vec<(f64, f64)> = measured.iter().map(|(_, figures)| *figures).collect();
     let all = f64::INFINITY;
@@ -133,19 +134,19 @@ fn pick(goal: Goal, measured: &[(Sampling, (f64, f64))]) -> Option<Choice> {
     })
 }
 
-/// What a picture takes.
+/// Seconds that a picture takes.
 struct Seconds {
     planned: f64,
     traced: f64,
 }
 
-/// Strips of a picture, from its top to its bottom.
+/// Strips that are spread over a picture from top to bottom.
 struct Strips<'a> {
     scene: &'a Scene,
     request: &'a RenderRequest,
     planner: &'a mut Planner,
     control: &'a RenderControl,
-    /// First rows.
+    /// The first row of each strip.
     firsts: Vec<usize>,
     rows: usize,
 }
@@ -175,12 +176,13 @@ impl<'a> Strips<'a> {
         }
     }
 
-    /// How many times more rows the whole picture has.
+    /// The number of rows of the whole picture, relative to that of the strips.
     fn share_of_all(&self) -> f64 {
         f64::from(self.request.height) / (self.rows * self.firsts.len()) as f64
     }
 
-    /// Their light, and what the whole picture takes: it is planned once, however many rows it has.
+    /// Traces the strips, and estimates the time of the whole picture. Planning counts once, whatever the number of
+    /// rows.
     fn trace(&mut self, sampling: Sampling) -> Option<(Vec<LinearRgb>, Seconds)> {
         let start = Instant::now();
         let request = RenderRequest {

@@ -1,5 +1,5 @@
-//! How much sooner a picture would come with more cores than this machine has: the times of its pieces, measured
-//! one by one, given to workers that do not exist.
+//! Simulates how much sooner a picture would be done with more cores than this machine has: its pieces are timed one
+//! by one, and assigned to imaginary workers.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -13,33 +13,33 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::Tracer;
 
-/// How many workers there are.
+/// Numbers of workers that are simulated.
 const WORKERS: [usize; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
-/// Times that each piece is traced, of which the fastest counts.
+/// How often each piece is traced; the fastest run counts.
 const ROUNDS: usize = 9;
 
-/// A picture by so many workers.
+/// A picture that a number of workers share.
 #[derive(Clone, Debug, Serialize)]
 pub struct SharedPicture {
-    /// The scene.
+    /// Name of the scene.
     pub scene: String,
-    /// How many workers there are.
+    /// Number of workers.
     pub workers: usize,
-    /// How many pieces they share.
+    /// Number of pieces that they share.
     pub pieces: usize,
-    /// Milliseconds until the last piece is done, with the planning that one worker does alone.
+    /// Milliseconds until the last piece is done, including the planning by one worker alone.
     pub ms: f64,
-    /// Share of the workers' time in which one worker alone would make the picture, 0–1.
+    /// Time in which one worker alone would make the picture, as a share of the total time of all workers, 0–1.
     pub efficiency: f64,
 }
 
-/// Simulates pictures of a scene whose camera moves. Handing out the pieces takes no time here, and a worker is as
-/// fast beside others as alone: more cores than these could not do better.
+/// Simulates pictures of a scene whose camera moves. Distributing the pieces takes no time here, and workers do not
+/// slow each other down, so real cores could not do better.
 ///
-/// Sixteen real cores (a virtual Xeon, 2026-11) made as many pictures of 9 ms and more as sixteen programs of one
-/// thread each at the same time; of the demo, which takes 1.7 ms there, 0.6 of that. A list of pieces from which
-/// threads take one after the other, in place of halves that are halved, made it 3.0 ms: 1,024 pieces of 10 µs are too
-/// many to stand in line for.
+/// On sixteen real cores (a virtual Xeon, 2026-11), the throughput of pictures that take 9 ms and more equalled that
+/// of sixteen single-threaded processes at the same time; of the demo, which takes 1.7 ms there, it was 0.6 of that.
+/// With a shared list from which threads take one piece after the other, instead of recursive halving, the demo took
+/// 3.0 ms: 1,024 pieces of 10 µs are too many to queue for.
 pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<SharedPicture> {
     let mut planner = Planner::default();
     let _ = Tracer::planned(scene, request, &mut planner);
@@ -47,7 +47,7 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
     let tracer = Tracer::planned(scene, request, &mut planner);
     let planning = since.elapsed();
     let mut measured = WORKERS.map(|workers| (workers, tracer.time_pieces(workers)));
-    // One after the other in each round: what disturbs a moment disturbs them alike.
+    // All numbers of workers take turns in each round, so that a disturbance affects them alike.
     for _ in 1..ROUNDS {
         for (workers, times) in &mut measured {
             for (time, again) in times.iter_mut().zip(tracer.time_pieces(*workers)) {
@@ -55,7 +55,7 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
             }
         }
     }
-    // In whatever pieces that is fastest: else what was measured twice would seem to be faster than it is.
+    // The fastest split counts as the time alone: otherwise measurement noise could make the efficiency exceed 1.
     let sums = measured.iter().map(|(_, times)| times.iter().sum());
     let alone = milliseconds(planning + sums.min().unwrap_or(Duration::ZERO));
     let picture = |(workers, times): (usize, Vec<Duration>)| {
@@ -83,9 +83,9 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// When the last of these pieces is done, if workers halve what they have until it is one piece, keep the first
-/// halves and take from each other's last ones what was put aside first, as those of rayon do (Blumofe and
-/// Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999).
+/// Returns when the last piece is done if each worker halves its range down to one piece, always keeping the first
+/// half and putting the other aside, and idle workers steal the range that another one put aside first, as in rayon
+/// (Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999).
 fn makespan(times: &[Duration], workers: usize) -> Duration {
     let mut aside: Vec<VecDeque<Range<usize>>> = vec![VecDeque::new(); workers];
     aside[0].push_back(0..times.len());
@@ -126,7 +126,7 @@ mod tests {
         assert_eq!(last(&[3, 1, 2], 1), 6);
         assert_eq!(last(&[1; 64], 4), 16);
         assert_eq!(last(&[1; 64], 128), 1);
-        // Nobody can help with the largest piece.
+        // The largest piece cannot be divided.
         assert_eq!(last(&[1, 1, 1, 20, 1, 1, 1, 1], 8), 20);
     }
 

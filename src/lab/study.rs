@@ -1,4 +1,4 @@
-//! A study: all candidates of a scene, measured step by step, so that other work can go first.
+//! A study: measures all candidates of a scene step by step, so that other work can go first.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,78 +11,79 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::trace::{RenderControl, Threads, Tracer};
 
-/// Samples along each side of a pixel of the two pictures whose mean is the reference. They have no place in common
-/// but the middle of the pixel, so that they are off in other ways, and what they differ by tells how far.
+/// Samples along each side of a pixel in the two pictures whose mean is the reference. The grids have only the centre
+/// of the pixel in common, so their errors are independent, and the difference of the pictures tells how large they
+/// are.
 const REFERENCE_GRIDS: [u32; 2] = [47, 53];
 /// Samples of the reference per pixel.
 pub const REFERENCE_SAMPLES: u32 = REFERENCE_GRIDS[0].pow(2) + REFERENCE_GRIDS[1].pow(2);
-/// Each of the two is traced in so many pieces, between which more urgent work can go first.
+/// Number of pieces in which each of the two pictures is traced; between them, more urgent work can go first.
 const REFERENCE_PIECES: usize = 32;
-/// What the references count for in the progress, in timed runs.
+/// Weight of the reference in the progress, in timed runs.
 const REFERENCE_WORTH: f64 = 100.0;
-/// Timed runs of each candidate, not counting the one that warms up.
+/// Timed runs of each candidate, without the one that warms up.
 const ROUNDS: usize = 9;
-/// A candidate that takes longer than this is run less often.
+/// Time of the first run above which a candidate is run less often.
 const SLOW: Duration = Duration::from_millis(250);
-/// Timed runs of such.
+/// Timed runs of such a candidate.
 const SLOW_ROUNDS: usize = 3;
 
-/// A spread above this makes a time doubtful.
+/// Spread above which a time is doubtful.
 const DOUBTFUL: f64 = 0.2;
 
-/// One measured way of tracing.
+/// A way of tracing, and its measurements.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// The way.
+    /// The way of tracing.
     pub candidate: Candidate,
-    /// What its picture is off; `None` until it is measured.
+    /// The error of its picture; `None` until it is measured.
     pub metrics: Option<ErrorMetrics>,
-    /// Rays per pixel of the finished picture, all kinds together.
+    /// Rays of all kinds per pixel of the finished picture.
     pub rays_per_pixel: f64,
     /// Milliseconds of each timed run.
     pub times: Vec<f64>,
     /// The picture.
     pub picture: Option<Arc<Image>>,
-    /// Real type and width of its kernel.
+    /// Real type and lane count of its kernel.
     pub lanes: String,
 }
 
-/// The time of a dot.
+/// The time of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// Milliseconds; the middle of all runs.
+    /// Median of all runs, in milliseconds.
     pub median: f64,
-    /// Milliseconds; a quarter of the runs was faster than the first, and slower than the second.
+    /// First and third quartile of the runs, in milliseconds.
     pub quartiles: (f64, f64),
-    /// Distance of the quartiles, as a share of the median.
+    /// Interquartile range, as a share of the median.
     pub spread: f64,
-    /// How many runs there were.
+    /// Number of runs.
     pub runs: usize,
 }
 
-/// What the errors are measured against.
+/// The picture that errors are measured against.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// How far it is off itself: half of what the two pictures differ by whose mean it is, which is the standard error
-    /// of a mean of two.
+    /// The error of the reference itself: half of the difference between the two pictures whose mean it is, which is
+    /// the standard error of the mean of two.
     pub rmse: f64,
     /// The picture.
     pub picture: Arc<Image>,
 }
 
-/// The measuring of a scene. Pictures are shared between copies.
+/// The measurements of a scene. Clones share their pictures.
 #[derive(Clone, Debug)]
 pub struct Study {
     scene: Arc<Scene>,
     size: (u32, u32),
-    /// The two pictures whose mean is the reference, as many rows as are traced; their mean in place of the first, once
-    /// it is known.
+    /// The rows traced so far of the two pictures whose mean is the reference. Once it is complete, the mean replaces
+    /// the first.
     references: [Arc<Vec<LinearRgb>>; 2],
-    /// There once the reference is.
+    /// `None` until the reference is complete.
     pub reference: Option<Reference>,
-    /// One for each candidate.
+    /// One entry per candidate.
     pub measurements: Vec<Measurement>,
-    /// Why another engine is not among them, though it was to be.
+    /// Why another engine was left out, if it was requested and failed.
     pub obstacle: Option<String>,
     planner: Planner,
     spent: Duration,
@@ -90,13 +91,14 @@ pub struct Study {
 }
 
 impl Study {
-    /// Nothing measured yet; pictures will have the scene's aspect, and a longer side of `side` pixels.
+    /// Creates a study without measurements; its pictures have the scene's aspect ratio and a longer side of `side`
+    /// pixels.
     pub fn of_side(scene: Arc<Scene>, side: u32) -> Self {
         let (width, height) = Self::size_of_side(&scene, side);
         Self::new(scene, width, height)
     }
 
-    /// Width and height of a scene's picture whose longer side is so long.
+    /// Width and height of a scene's picture whose longer side has `side` pixels.
     pub fn size_of_side(scene: &Scene, side: u32) -> (u32, u32) {
         let (width, height) = (scene.render.width, scene.render.height);
         let scale = f64::from(side) / f64::from(width.max(height));
@@ -104,7 +106,7 @@ impl Study {
         (scaled(width), scaled(height))
     }
 
-    /// Nothing measured yet; pictures will be `width × height`.
+    /// Creates a study without measurements; its pictures have `width × height` pixels.
     pub fn new(scene: Arc<Scene>, width: u32, height: u32) -> Self {
         let measurements = candidates(&scene, width, height).into_iter();
         Self {
@@ -120,14 +122,14 @@ impl Study {
         }
     }
 
-    /// The same, and POV-Ray beside all ways, if it is there.
+    /// Adds POV-Ray to the comparison; it is left out again if it fails.
     pub fn with_povray(mut self) -> Self {
         let referee = povray(&self.scene, self.size.0, self.size.1);
         self.measurements.push(Measurement::new(referee));
         self
     }
 
-    /// The scene that is measured.
+    /// The measured scene.
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
@@ -137,9 +139,8 @@ impl Study {
         self.size
     }
 
-    /// Does the next piece of work on the current rayon pool: rows of a reference, a picture, or a timed
-    /// run.
-    /// `false` when all is done. A piece that `control` has stopped is done again the next time.
+    /// Does the next piece of work on the current rayon pool: some rows of a reference, a picture, or a timed run.
+    /// Returns `false` if all is done. A piece that `control` stopped is repeated in the next call.
     pub fn step(&mut self, control: &RenderControl) -> bool {
         let start = Instant::now();
         let is_more = if self.reference.is_none() {
@@ -159,7 +160,7 @@ impl Study {
         is_more
     }
 
-    /// Share of the work that is done, 0–1, by the number of its pieces.
+    /// Share of the work that is done, 0–1, by the number of pieces.
     pub fn progress(&self) -> f64 {
         let seen = self
             .measurements
@@ -171,7 +172,7 @@ impl Study {
             Some(_) => 2 * pixels,
             None => self.references.iter().map(|light| light.len()).sum(),
         };
-        // References take as long as a good part of the rest.
+        // References take as long as a considerable part of the rest.
         let reference = REFERENCE_WORTH * traced as f64 / (2 * pixels) as f64;
         let wanted: usize = self.measurements.iter().map(Measurement::rounds).sum();
         let runs: usize = self.measurements.iter().map(|dot| dot.times.len()).sum();
@@ -179,13 +180,13 @@ impl Study {
         (reference + done as f64) / (REFERENCE_WORTH + all as f64)
     }
 
-    /// How long the rest will take; `None` at the start.
+    /// Estimated time for the rest; `None` at the start.
     pub fn remaining(&self) -> Option<Duration> {
         let done = self.progress();
         (done > 0.0).then(|| self.spent.mul_f64((1.0 - done) / done))
     }
 
-    /// A few rows of one of the two pictures, or their mean when both are there.
+    /// Traces some rows of one of the two pictures, or computes their mean if both are complete.
     fn find_reference(&mut self, control: &RenderControl) {
         let (width, height) = (self.size.0 as usize, self.size.1 as usize);
         let unfinished = self
@@ -241,7 +242,7 @@ impl Study {
         dot.lanes = tracer.lanes();
     }
 
-    /// The picture of the other engine, and one of its times.
+    /// Draws the picture with POV-Ray, and records its first time.
     fn ask_povray(&mut self, index: usize, control: &RenderControl) -> Result<(), PovrayError> {
         let scene = self.measurements[index].candidate.scene(&self.scene);
         let drawn = by_povray(&scene, Threads::current(), control)?;
@@ -255,8 +256,8 @@ impl Study {
         Ok(())
     }
 
-    /// One run of the candidate that has had the fewest, in turn, so that what disturbs the machine
-    /// for a while disturbs all of them. Another engine comes first: what it leaves behind disturbs who comes next.
+    /// Times one run of the candidate that has had the fewest, so that all take turns and a temporary disturbance of
+    /// the machine affects them all. The other engine goes first, because it disturbs what runs after it.
     fn time_next(&mut self, control: &RenderControl) -> bool {
         let waiting = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
         let Some(dot) = self
@@ -273,12 +274,12 @@ impl Study {
             match by_povray(&scene, Threads::current(), control) {
                 Ok(drawn) => dot.times.push(drawn.time.as_secs_f64() * 1e3),
                 Err(PovrayError::Stopped) => {}
-                // It has drawn this before: what it took then has to do.
+                // It has drawn this scene before: reuse its first time.
                 Err(_) => dot.times.push(first),
             }
             return true;
         }
-        // The first run of all finds cold caches and sleeping threads.
+        // The very first run is not counted: it finds cold caches and sleeping threads.
         let runs = if self.timed == 0 { 2 } else { 1 };
         for _ in 0..runs {
             let start = Instant::now();
@@ -294,7 +295,7 @@ impl Study {
     }
 }
 
-/// The finished picture, as the user would get it.
+/// Draws the finished picture, as users would get it.
 fn draw(
     candidate: &Candidate,
     scene: &Scene,
@@ -315,7 +316,7 @@ fn draw(
 }
 
 impl Measurement {
-    /// Nothing measured yet.
+    /// Creates an entry without measurements.
     fn new(candidate: Candidate) -> Self {
         Self {
             candidate,
@@ -327,7 +328,7 @@ impl Measurement {
         }
     }
 
-    /// How often it is to be timed.
+    /// The number of timed runs that it needs.
     fn rounds(&self) -> usize {
         let slow = SLOW.as_secs_f64() * 1e3;
         if self.times.first().is_some_and(|&time| time > slow) {
@@ -337,16 +338,16 @@ impl Measurement {
         }
     }
 
-    /// Whether its runs differ by too much to trust their median.
+    /// Returns whether its runs differ too much to trust the median.
     pub fn is_doubtful(&self) -> bool {
         self.timing().is_some_and(|timing| timing.spread > DOUBTFUL)
     }
 
-    /// Its time, once there is one.
+    /// Statistics of its runs; `None` before the first.
     pub fn timing(&self) -> Option<Timing> {
         let mut times = self.times.clone();
         times.sort_by(f64::total_cmp);
-        // Between neighbours in proportion (Hyndman and Fan, "Sample quantiles in statistical packages", The
+        // Linear interpolation between neighbours (Hyndman and Fan, "Sample quantiles in statistical packages", The
         // American Statistician 50(4), 1996, definition 7).
         let at = |share: f64| {
             let place = times.len().checked_sub(1)? as f64 * share;

@@ -1,4 +1,4 @@
-//! A study as text.
+//! A study as a table.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::clusters::front_of;
 use super::study::{REFERENCE_SAMPLES, Study};
 
-/// The dots by time, for people; those on the front are marked.
+/// The measurements by time, as readable text; those on the front are marked.
 pub fn table(study: &Study) -> String {
     let costs = study.costs();
     let front = front_of(study);
@@ -50,7 +50,7 @@ pub fn table(study: &Study) -> String {
     text
 }
 
-/// A line of the file.
+/// A line of the CSV file.
 #[derive(Serialize)]
 struct Figures<'a> {
     name: &'a str,
@@ -73,7 +73,7 @@ struct Figures<'a> {
     scene: &'a str,
 }
 
-/// All figures of studies, each with the name of its scene, as comma-separated values: one line for each dot.
+/// All measurements of studies, each with the name of its scene, as comma-separated values: one line per measurement.
 ///
 /// # Errors
 /// None is known: everything is written to memory.
@@ -86,7 +86,7 @@ pub fn csv(
     csv_of(rows.flat_map(|(scene, study)| figures(scene, study, (machine, threads))))
 }
 
-/// A line for each dot that is measured.
+/// One line per complete measurement.
 fn figures<'a>(
     scene: &'a str,
     study: &'a Study,
@@ -122,7 +122,7 @@ fn figures<'a>(
     })
 }
 
-/// Rows as comma-separated values.
+/// Formats rows as comma-separated values.
 ///
 /// # Errors
 /// None is known: everything is written to memory.

@@ -1,63 +1,63 @@
-//! Why a mesh file could not be read.
+//! Errors of reading mesh files.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a mesh file could not be read.
+/// Error of reading a mesh file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The file name says no known format.
+    /// The file name has no known extension.
     #[error("{path}: meshes are read from files that end in .obj, .stl, .ply, .gltf or .glb", path = .path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
     },
-    /// The disk said no.
+    /// The file could not be read from disk.
     #[error("cannot read {path}: {source}", path = .path.display())]
     Disk {
         /// The file.
         path: PathBuf,
-        /// What the system answered.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// The file is larger than any that is read.
+    /// The file is larger than the limit.
     #[error("{path}: a mesh file has at most {limit} bytes, this one has more", path = .path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// The most that is read.
+        /// The limit in bytes.
         limit: u64,
     },
-    /// There is more in the file than is read.
+    /// The file has more elements of some kind than the limit.
     #[error("{path}: a mesh has at most {limit} {what}, this one has more", path = .path.display())]
     TooMany {
         /// The file.
         path: PathBuf,
-        /// Of what there are too many.
+        /// The kind of element, in the plural.
         what: &'static str,
-        /// The most that is read.
+        /// The limit.
         limit: usize,
     },
-    /// There is no triangle in the file that has an area.
+    /// The file has no triangle with an area.
     #[error("{path}: there are no faces with an area in this file", path = .path.display())]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// The file is not what its ending says, or is broken.
+    /// The file is not in the format of its extension, or is broken.
     #[error("{path}{place}: {why}", path = .path.display(), place = .line.map(|line| format!(":{line}")).unwrap_or_default())]
     Refused {
         /// The file.
         path: PathBuf,
-        /// Line, from 1, of a text file.
+        /// Line of a text file, counted from 1.
         line: Option<usize>,
         /// What is wrong and what was expected, without a full stop.
         why: String,
     },
 }
 
-/// What is wrong inside a file, before its name is known.
+/// What is wrong with the contents of a file; it becomes a [`MeshError`] together with the file's path.
 #[derive(Debug)]
 pub(super) enum Fault {
     TooMany { what: &'static str, limit: usize },
@@ -74,25 +74,25 @@ impl std::fmt::Display for Fault {
 }
 
 impl Fault {
-    /// Something is wrong that has no line.
+    /// A fault without a line.
     pub(super) fn new(why: impl Into<String>) -> Self {
         let (line, why) = (None, why.into());
         Self::Refused { line, why }
     }
 
-    /// Something is wrong in a line, counted from 1.
+    /// A fault in a line, counted from 1.
     pub(super) fn in_line(line: usize, why: impl Into<String>) -> Self {
         let (line, why) = (Some(line), why.into());
         Self::Refused { line, why }
     }
 
-    /// The error, now that the file's name is known.
+    /// Adds the path of the file.
     pub(super) fn of(self, path: &Path) -> MeshError {
         let path = path.to_owned();
         match self {
             Self::TooMany { what, limit } => MeshError::TooMany { path, what, limit },
             Self::Refused { line, why } => {
-                // Names in a file may be of any length and hold anything.
+                // Names quoted from a file may be of any length and hold any character.
                 let why = excerpt(&why, LONGEST);
                 MeshError::Refused { path, line, why }
             }
@@ -100,10 +100,10 @@ impl Fault {
     }
 }
 
-/// Most characters of a sentence.
+/// Most characters of an error message.
 const LONGEST: usize = 240;
 
-/// At most so many characters of a text, on one line.
+/// Returns at most `most` characters of a text, with control characters replaced by spaces; `…` marks a cut.
 pub(super) fn excerpt(text: &str, most: usize) -> String {
     let mut characters = text.chars();
     let mut shown: String = characters

@@ -1,4 +1,4 @@
-//! The numbers that a glTF file refers to: which bytes they are, and that they are there.
+//! Access to the data of glTF accessors, with all bounds checked.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -17,30 +17,30 @@ use super::error::{Fault, excerpt};
 use super::limits::{check_points, read_companion};
 use crate::files::{stays_inside, with_separators};
 
-/// Exporters do and do not pad.
+/// Padding is optional, because exporters differ.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Most bytes of all buffers of a file.
+/// Most bytes of all buffers of a file together.
 const MAX_BYTES: usize = 2 << 30;
 
 /// The bytes of all buffers.
 pub(super) struct Buffers<'a> {
-    /// What a GLB file has behind its JSON.
+    /// The binary chunk of a GLB file.
     chunk: Option<&'a [u8]>,
-    /// Nothing for the buffer that is the chunk.
+    /// One entry per buffer; `None` for the one that is the binary chunk.
     loaded: Vec<Option<Rc<Vec<u8>>>>,
-    /// Whether positions may be whole numbers.
+    /// Whether positions may be integers.
     is_quantized: bool,
 }
 
-/// The extension by which positions are whole numbers.
+/// The extension that allows integer positions.
 const QUANTIZED: &str = "KHR_mesh_quantization";
 
 impl<'a> Buffers<'a> {
-    /// Reads the buffers that are not in the file, too: they lie in `folder`.
+    /// Loads all buffers, including those in other files, which must lie in `folder` or below it.
     pub(super) fn load(
         document: &Document,
         chunk: Option<&'a [u8]>,
@@ -48,7 +48,7 @@ impl<'a> Buffers<'a> {
     ) -> Result<Self, Fault> {
         let mut loaded = Vec::new();
         let mut total = 0;
-        // One that is named a thousand times is there once.
+        // A buffer that is named a thousand times is loaded once.
         let mut known: HashMap<&str, Rc<Vec<u8>>> = HashMap::new();
         for buffer in document.buffers() {
             let bytes = match buffer.source() {
@@ -77,7 +77,7 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// Three numbers for each point.
+    /// Reads a point per item, including sparse replacements.
     pub(super) fn positions(&self, accessor: &Accessor) -> Result<Vec<[f32; 3]>, Fault> {
         let is_float = accessor.data_type() == DataType::F32;
         if accessor.dimensions() != Dimensions::Vec3 || !(is_float || self.is_quantized) {
@@ -87,7 +87,7 @@ impl<'a> Buffers<'a> {
         let mut points = if accessor.view().is_some() {
             self.numbers(accessor)?
         } else {
-            // Zeros, of which some are replaced: "glTF 2.0 specification", 3.6.2.3.
+            // Zeros, some of which are replaced: "glTF 2.0 specification", 3.6.2.3.
             check_points(accessor.count())?;
             vec![[0.0; 3]; accessor.count()]
         };
@@ -116,8 +116,8 @@ impl<'a> Buffers<'a> {
         Ok(points)
     }
 
-    /// So many numbers for each item, without those that a sparse accessor replaces. The caller knows that there are so
-    /// many.
+    /// Reads `N` numbers per item, without the replacements of a sparse accessor. The caller has checked that items
+    /// have `N` components.
     pub(super) fn numbers<const N: usize>(
         &self,
         accessor: &Accessor,
@@ -126,7 +126,7 @@ impl<'a> Buffers<'a> {
         Ok(items.map(|item| components(item, accessor)).collect())
     }
 
-    /// Whole numbers of one to four bytes.
+    /// Reads unsigned integers of one, two or four bytes.
     pub(super) fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, Fault> {
         let is_index = matches!(
             accessor.data_type(),
@@ -143,7 +143,7 @@ impl<'a> Buffers<'a> {
         Ok(self.items(accessor)?.map(whole).collect())
     }
 
-    /// The bytes of each item. The crate's own iterator panics on some of what is refused here.
+    /// Returns the bytes of each item. The crate's own iterator panics on some of the files that are refused here.
     fn items<'s>(
         &'s self,
         accessor: &Accessor,
@@ -156,7 +156,7 @@ impl<'a> Buffers<'a> {
         self.slices(&view, slots, number)
     }
 
-    /// So many items of a size, from an offset into a view on, for the accessor of a number.
+    /// Returns the bytes of `count` items of `size` bytes, starting at `offset` in a view, for accessor `number`.
     fn slices<'s>(
         &'s self,
         view: &View,
@@ -171,7 +171,7 @@ impl<'a> Buffers<'a> {
         let buffer = view.buffer().index();
         let loaded = self.loaded.get(buffer).and_then(Option::as_ref);
         let loaded = loaded.map(|bytes| bytes.as_slice());
-        // Only the first can be what stands behind the JSON.
+        // Only the first buffer can be the binary chunk.
         let Some(bytes) = loaded.or(self.chunk.filter(|_| buffer == 0)) else {
             return refuse("names a buffer that is not there");
         };
@@ -197,7 +197,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// A whole number of up to four bytes.
+/// Reads a little-endian unsigned integer of up to four bytes.
 fn whole(item: &[u8]) -> u32 {
     let mut bytes = [0; 4];
     for (byte, &from) in bytes.iter_mut().zip(item) {
@@ -206,7 +206,7 @@ fn whole(item: &[u8]) -> u32 {
     u32::from_le_bytes(bytes)
 }
 
-/// The numbers of an item, of which those that are not there are not numbers. Normalized ones stand for −1 to 1.
+/// Decodes the components of an item; missing ones are NaN. Normalized integers are scaled to −1 to 1.
 fn components<const N: usize>(item: &[u8], accessor: &Accessor) -> [f32; N] {
     let (kind, is_share) = (accessor.data_type(), accessor.normalized());
     let size = kind.size();
@@ -270,7 +270,7 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
     })
 }
 
-/// Why an accessor is not read.
+/// The fault of an accessor that is not read.
 pub(super) fn refused(accessor: &Accessor, why: impl std::fmt::Display) -> Fault {
     Fault::new(format!("accessor {} {why}", accessor.index()))
 }

@@ -1,4 +1,4 @@
-//! glTF and GLB: the triangles of the default scene, where its nodes put them.
+//! glTF and GLB: the triangles of the default scene, transformed by its nodes.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -18,9 +18,9 @@ use super::limits::{check_faces, check_groups, check_points};
 use super::part::{CLEAR, COLORS_OF_POINTS, GLOWING, MeshFile, Part, PartColors};
 use super::triangles::Triangles;
 
-/// Most objects and lists in the JSON: each can cost hundreds of bytes.
+/// Most objects and lists in the JSON: each can cost hundreds of bytes of memory.
 const MAX_OBJECTS: usize = 1_000_000;
-/// How often points are gone through, on average, where many parts share one list.
+/// The points that are read may exceed the limit on points by this factor, because primitives may share an accessor.
 const MOST_SCANS: usize = 100;
 /// Extensions without which the triangles cannot be read.
 const GEOMETRY_EXTENSIONS: [&str; 4] = [
@@ -29,10 +29,10 @@ const GEOMETRY_EXTENSIONS: [&str; 4] = [
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
 ];
-/// The extension by which a node stands in many places.
+/// The extension that draws a node in several places.
 const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
-/// Reads the primitives of the default scene, or of the first if none is said to be, or of all nodes if there is none.
+/// Reads the primitives of the default scene; without one, of the first scene; without any, of all nodes.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     let (json, chunk) = split(bytes)?;
     let (document, animates) = document_of(&json)?;
@@ -50,7 +50,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     let mut shown = Vec::new();
     let roots = roots(&document).into_iter();
     let mut stack: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
-    // The first node is on top.
+    // The first node goes on top of the stack.
     stack.reverse();
     while let Some((node, outer)) = stack.pop() {
         let index = node.index();
@@ -76,7 +76,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     })
 }
 
-/// The nodes that are in no other one, of the scene that is shown.
+/// The root nodes of the scene that is read.
 fn roots(document: &Document) -> Vec<Node<'_>> {
     let scene = document.default_scene();
     if let Some(scene) = scene.or_else(|| document.scenes().next()) {
@@ -90,7 +90,7 @@ fn roots(document: &Document) -> Vec<Node<'_>> {
     nodes.filter(|node| !is_child[node.index()]).collect()
 }
 
-/// What of a file is not read.
+/// Notes on what is in a file but is not read.
 fn notes(document: &Document, animates: bool) -> Vec<String> {
     let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
@@ -133,12 +133,12 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
 
 type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
 
-/// The JSON, and the bytes behind it if this is a GLB file.
+/// Returns the JSON, and the binary chunk if this is a GLB file.
 fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
     if !bytes.starts_with(b"glTF") {
         return Ok((Cow::Borrowed(bytes), None));
     }
-    // The crate subtracts the header from this length unseen.
+    // The crate subtracts the header from this length without a check.
     let length = bytes.get(8..).and_then(<[u8]>::first_chunk);
     let length = length.map_or(0, |length| u32::from_le_bytes(*length) as usize);
     if length < 20 || length > bytes.len() {
@@ -152,7 +152,7 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
     Ok((glb.json, glb.bin))
 }
 
-/// What the file says, and whether it says how things move.
+/// Parses and validates the JSON; also returns whether the file has animations.
 fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     let objects = json.iter().filter(|&&byte| byte == b'{' || byte == b'[');
     if objects.count() > MAX_OBJECTS {
@@ -161,7 +161,7 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     }
     let (mut root, animates) = root_of(json)?;
     root.animations.clear();
-    // What is only about materials, lights or pictures does not keep the triangles from being read.
+    // Required extensions for materials, lights or images do not prevent reading the triangles.
     let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(|name| is_needed(name)) {
         return Err(Fault::new(format!(
@@ -184,8 +184,8 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     Ok((document, animates))
 }
 
-/// The same before anything is looked at. What moves may be said in ways that the crate does not know, as pointers; it
-/// is left out anyway.
+/// Parses the JSON without validating it; also returns whether the file has animations. Animations may use features
+/// that the crate does not know, such as pointers; if they are why parsing fails, they are removed.
 fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
     let error = match Root::from_slice(json) {
         Ok(root) => {
@@ -214,9 +214,9 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
     Err(Fault::in_line(error.line(), sentence))
 }
 
-/// The crate panics on positions that are not there, and refuses those without their bounds, which
-/// nobody here asks for and not every exporter writes. It refuses primitives without any as well, and attributes of
-/// applications, which are legal.
+/// Works around the `gltf` crate: it panics if the accessor of positions is missing, and refuses positions without
+/// bounds, which are not needed here and which some exporters omit. It also refuses primitives without positions, and
+/// application-specific attributes, which are legal.
 fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
     for mesh in &mut root.meshes {
         for primitive in &mut mesh.primitives {
@@ -261,7 +261,7 @@ fn matrix_of(node: &Node) -> DMat4 {
             let is_rotation = rotation.length_squared() > 0.0;
             DMat4::from_scale_rotation_translation(
                 Vec3::from(scale).as_dvec3(),
-                // Single precision is not quite of length one.
+                // A quaternion in single precision is not exactly of unit length.
                 if is_rotation {
                     rotation.normalize()
                 } else {
@@ -273,13 +273,13 @@ fn matrix_of(node: &Node) -> DMat4 {
     }
 }
 
-/// What has been read on the way through the nodes.
+/// State of the walk through the nodes.
 struct Walk<'a> {
     buffers: Buffers<'a>,
     stem: &'a str,
     parts: Vec<Part>,
     points: usize,
-    /// Points that were gone through for them.
+    /// Points that were read for the parts, including those of shared accessors that a part does not use.
     scanned: usize,
     faces: usize,
 }
@@ -291,7 +291,7 @@ impl Walk<'_> {
         };
         let placing = match node.skin() {
             Some(skin) => {
-                // Many nodes may have the same skin.
+                // Many nodes may share a skin.
                 let matrices = skin.inverse_bind_matrices().map_or(0, |all| all.count());
                 let joints = skin.joints().count();
                 self.scanned = self.scanned.saturating_add(joints.max(matrices));
@@ -332,8 +332,8 @@ impl Walk<'_> {
         let corners = primitive
             .indices()
             .map_or(accessor.count(), |indices| indices.count());
-        // Many nodes may show the same mesh, so a small file can be a large scene; of a list that many share,
-        // what each needs counts, and to have gone through it.
+        // Many nodes may show the same mesh, so a small file can be a large scene. If primitives share an accessor,
+        // each counts for the points that it uses, and for those that are scanned to find them.
         self.points = self.points.saturating_add(corners.min(accessor.count()));
         self.scanned = self.scanned.saturating_add(accessor.count());
         check_points(self.scanned / MOST_SCANS)?;
@@ -349,7 +349,7 @@ impl Walk<'_> {
             None => (0..points.len() as u32).collect(),
         };
         let mut faces = triangles_of(&corners, mode);
-        // A mirror turns faces, and turns them back where there are two.
+        // A reflection turns faces inside out; two reflections cancel out.
         if placing.is_mirror() {
             for [_, b, c] in &mut faces {
                 std::mem::swap(b, c);
@@ -386,7 +386,7 @@ fn triangles_of(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
 }
 
 fn colors_of(material: &Material) -> Option<PartColors> {
-    // The default material is in no file.
+    // The default material is not in the file.
     let index = material.index()?;
     let [red, green, blue, _] = material.pbr_metallic_roughness().base_color_factor();
     Some(PartColors {
@@ -400,7 +400,7 @@ fn colors_of(material: &Material) -> Option<PartColors> {
     })
 }
 
-/// What a screen is sent for an amount of light.
+/// Converts linear light to sRGB.
 fn srgb_of(light: f64) -> f64 {
     match light {
         ..=0.0 => 0.0,

@@ -1,4 +1,4 @@
-//! Where a skin puts the points of a glTF mesh: each between the places where the joints that it hangs on put it.
+//! Skinning of glTF meshes: each point is the weighted mean of where its joints move it.
 
 use glam::{DMat4, DVec3};
 use gltf::accessor::{DataType, Dimensions};
@@ -8,22 +8,22 @@ use gltf::{Semantic, Skin};
 use super::error::Fault;
 use super::gltf_buffers::{Buffers, refused};
 
-/// How a node's mesh becomes part of the scene.
+/// How the points of a node's mesh are placed in the scene.
 pub(super) enum Placing {
-    /// As a whole.
+    /// By the node's own transform.
     Whole(DMat4),
-    /// By the joints of a skin, whatever the node's own place is.
+    /// By the joints of a skin, regardless of the node's own transform.
     Joints(Vec<DMat4>),
 }
 
-/// The joints of a skin and their shares, for each point of a primitive.
+/// Joint indices and weights of each point of a primitive.
 pub(super) struct Hung {
     joints: Vec<[f32; 4]>,
     weights: Vec<[f32; 4]>,
 }
 
 impl Placing {
-    /// That of a skin, where `places` is what each node is put by.
+    /// The placing by a skin; `places` holds the global transform of each node.
     pub(super) fn of_skin(skin: &Skin, places: &[DMat4], buffers: &Buffers) -> Result<Self, Fault> {
         let unbound = match skin.inverse_bind_matrices() {
             None => Vec::new(),
@@ -49,7 +49,7 @@ impl Placing {
         Ok(Self::Joints(joints.collect()))
     }
 
-    /// Whether it turns what is outside in.
+    /// Returns whether it mirrors, and so turns faces inside out.
     pub(super) fn is_mirror(&self) -> bool {
         let first = match self {
             Self::Whole(matrix) => Some(matrix),
@@ -58,7 +58,7 @@ impl Placing {
         first.is_some_and(|matrix| matrix.determinant() < 0.0)
     }
 
-    /// What a primitive of so many points hangs on, if that matters.
+    /// Reads the joints and weights of a primitive with this number of points; `None` if it is not skinned.
     pub(super) fn hung(
         &self,
         primitive: &Primitive,
@@ -82,7 +82,7 @@ impl Placing {
         }))
     }
 
-    /// Where a point of a primitive is; the last row of matrices is 0 0 0 1.
+    /// Returns the position of a point in the scene. The matrices are affine: their last row is 0 0 0 1.
     pub(super) fn place(&self, point: DVec3, index: usize, hung: Option<&Hung>) -> DVec3 {
         let joints = match self {
             Self::Whole(matrix) => return matrix.transform_point3(point),
@@ -93,7 +93,7 @@ impl Placing {
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         if let Some((numbers, weights)) = shares {
             for (&number, &weight) in numbers.iter().zip(weights) {
-                // Whole numbers in a few bytes are exact in single precision.
+                // Joint indices have at most two bytes, so they are exact in single precision.
                 if let Some(joint) = joints.get(number as usize) {
                     sum += joint.transform_point3(point) * f64::from(weight);
                     total += f64::from(weight);

@@ -1,4 +1,4 @@
-//! How much is read, so that no file, broken or hostile, can fill the memory.
+//! Limits on what is read, so that no file, broken or hostile, can exhaust the memory.
 
 use std::io;
 use std::path::Path;
@@ -6,26 +6,26 @@ use std::path::Path;
 use super::error::{Fault, MeshError};
 use crate::files::{open_file, read_at_most};
 
-/// Longest file that is read, in bytes.
+/// Largest file that is read, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
-/// Most triangles of a file.
+/// Most triangles per file.
 const MAX_FACES: usize = 16_000_000;
-/// Most points of a file: more than three a face are of no use.
+/// Most points per file: no file needs more than three per face.
 const MAX_POINTS: usize = 3 * MAX_FACES;
-/// Most groups of a file, each of which is a part with a name of its own.
+/// Most groups per file; each is a part with its own name.
 const MAX_GROUPS: usize = 1_000_000;
 
-/// Refuses more faces than are read.
+/// Fails if there are more faces than the limit.
 pub(super) fn check_faces(count: usize) -> Result<(), Fault> {
     check("faces", count, MAX_FACES)
 }
 
-/// Refuses more points than are read.
+/// Fails if there are more points than the limit.
 pub(super) fn check_points(count: usize) -> Result<(), Fault> {
     check("points", count, MAX_POINTS)
 }
 
-/// Refuses more groups than are read.
+/// Fails if there are more groups than the limit.
 pub(super) fn check_groups(count: usize) -> Result<(), Fault> {
     check("groups", count, MAX_GROUPS)
 }
@@ -37,7 +37,7 @@ fn check(what: &'static str, count: usize, limit: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The bytes of a mesh file.
+/// Reads a mesh file whole.
 pub(super) fn read_mesh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     let bytes = read_bounded(path, MAX_BYTES).map_err(|source| MeshError::Disk {
         path: path.to_owned(),
@@ -49,12 +49,12 @@ pub(super) fn read_mesh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     })
 }
 
-/// The bytes of a file beside a mesh file.
+/// Reads a file that a mesh file refers to.
 pub(super) fn read_companion(path: &Path) -> io::Result<Vec<u8>> {
     read_bounded(path, MAX_BYTES)?.ok_or_else(|| io::ErrorKind::FileTooLarge.into())
 }
 
-/// The bytes of a file, or nothing if there are more than `limit`.
+/// Reads a file whole; `None` if it has more than `limit` bytes.
 pub(super) fn read_bounded(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
     Ok(read_at_most(open_file(path)?, limit)?.ok())
 }

@@ -1,8 +1,8 @@
-//! Triangle meshes out of files: OBJ with MTL, STL, PLY, and the triangles of glTF and GLB.
+//! Reads triangle meshes from files: OBJ with MTL, STL, PLY, and the triangles of glTF and GLB.
 //!
-//! Every format comes out the same: points that are equal are one, in the order in which faces
-//! need them; faces are triangles with an area, each once, clockwise seen from outside. Memory is
-//! bounded by what a file holds, not by what its header claims.
+//! All formats give the same form: equal points are merged, in the order of their first use by a face; faces are
+//! triangles of nonzero area without duplicates, wound clockwise seen from outside. Memory use is bounded by the size
+//! of the file, not by what its header claims.
 
 mod error;
 
@@ -47,7 +47,7 @@ pub use part::{MeshFile, Part, PartColors};
 pub use solids::{SOLIDS, Solid, icosphere};
 pub use triangles::{FARTHEST, Triangles, are_closed, place_key};
 
-/// What a mesh is written in.
+/// File format of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MeshFormat {
     Obj,
@@ -69,13 +69,13 @@ impl MeshFormat {
     }
 }
 
-/// Whether the ending of a file's name, in any case, is one of a mesh file.
+/// Returns whether a path has the extension of a mesh file, in upper or lower case.
 pub fn is_mesh_file(path: &Path) -> bool {
     MeshFormat::of_path(path).is_some()
 }
 
-/// What marks a mesh file now; of a glTF file, together with the file of the same name with its numbers, which most
-/// programs write beside it, and may write later. `None` where the system does not say.
+/// Returns the current time and size of a mesh file, to detect changes. For a glTF file they include the `.bin` file
+/// of the same name that most programs write beside it, possibly later. `None` if the system does not tell.
 pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
     let (time, length) = marks_of(path)?;
     let is_gltf = has_ending(path, "gltf");
@@ -87,7 +87,7 @@ pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
 /// Reads the parts of a mesh file that have triangles.
 ///
 /// # Errors
-/// [`MeshError`]: which file, where in it, and what is wrong. Nothing is half-read.
+/// [`MeshError`] with the file, the place in it and what is wrong. Nothing is returned of a file with an error.
 pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
     let Some(format) = MeshFormat::of_path(path) else {
         return Err(MeshError::UnknownFormat {
@@ -96,7 +96,7 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
     };
     let mut bytes = limits::read_mesh_bytes(path)?;
     let marked = bytes.len() - text::without_mark(&bytes).len();
-    // The header of a binary STL file is anything.
+    // Only text: the header of a binary STL file may hold any bytes, also those of a byte order mark.
     if format != MeshFormat::Stl || stl::is_text(&bytes[marked..]) {
         bytes.drain(..marked);
     }
@@ -118,10 +118,10 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
     Ok(file)
 }
 
-/// Reads a PLY file that is part of the program.
+/// Reads a PLY file that is embedded in the program.
 ///
 /// # Errors
-/// [`MeshError`]: where in it what is wrong.
+/// [`MeshError`] with the place in the file and what is wrong.
 pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
     let path = Path::new("the program's own mesh");
     let file = ply::read(bytes, "").map_err(|fault| fault.of(path))?;
@@ -132,7 +132,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
 /// Reads all parts of a mesh file as one mesh, in the coordinates of the file.
 ///
 /// # Errors
-/// [`MeshError`]: which file, where in it, and what is wrong.
+/// [`MeshError`] with the file, the place in it and what is wrong.
 pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
     let mut file = read_mesh_file(path)?;
     match file.parts.as_mut_slice() {

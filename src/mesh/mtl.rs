@@ -1,4 +1,4 @@
-//! Colours of OBJ files.
+//! Colours of OBJ files, from MTL files.
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
@@ -15,43 +15,43 @@ use super::part::{CLEAR, GLOWING, PartColors};
 use super::text::text_of;
 use crate::files::stays_inside;
 
-/// Most bytes of the material files of one OBJ file: room for thousands of materials.
+/// Most bytes of all material files of one OBJ file together: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
-/// Most files that are looked for under a name that is the same but for capitals.
+/// Most files that are searched for by a name that differs in case only.
 const MOST_SEARCHES: u32 = 32;
-/// The models of illumination in which reflections are traced: Alias/Wavefront, "Object files", appendix B1.
+/// The illumination models with traced reflections: Alias/Wavefront, "Object files", appendix B1.
 const MIRRORING: RangeInclusive<u8> = 3..=7;
-/// Most characters of a file's name in a sentence.
+/// Most characters of a file name in a message.
 const LONGEST_NAME: usize = 80;
 
-/// What exporters write where there is no material.
+/// Names that exporters write for faces without a material.
 const NO_MATERIAL: [&str; 2] = ["None", "(null)"];
 
 /// Reads the material files that one OBJ file names.
 pub(super) struct Libraries<'a> {
     folder: &'a Path,
-    /// A file that is named a million times is read until these are used up.
+    /// Bytes that may still be read, so that a file that is named a million times does not cost as many reads.
     left: Cell<u64>,
-    /// How many files may still be looked for under another spelling.
+    /// How many files may still be searched for by a name that differs in case.
     searches: Cell<u32>,
-    /// The materials that were read.
+    /// Names of the materials that were read.
     names: RefCell<HashSet<String>>,
-    /// The first file that was named and could not be read.
+    /// The first material file that could not be read.
     missing: RefCell<Option<String>>,
-    /// The first material that was named and is in no file.
+    /// The first material that was used and is in no file.
     unknown: RefCell<Option<String>>,
-    /// The first material that was named before any file was read.
+    /// The first material that was used before any file was read.
     early: RefCell<Option<String>>,
-    /// Whether a material has a picture for a colour.
+    /// Whether a material has a texture.
     has_textures: Cell<bool>,
-    /// Whether something is transparent in one of them.
+    /// Whether a material is transparent.
     is_clear: Cell<bool>,
-    /// Whether something glows.
+    /// Whether a material emits light.
     glows: Cell<bool>,
 }
 
 impl<'a> Libraries<'a> {
-    /// Material files are looked for in the folder of the OBJ file.
+    /// Material files are searched for in `folder`, that of the OBJ file.
     pub(super) fn new(folder: &'a Path) -> Self {
         Self {
             folder,
@@ -67,7 +67,7 @@ impl<'a> Libraries<'a> {
         }
     }
 
-    /// What is to be said about what materials have that is left out.
+    /// The notes on properties of materials that are left out.
     pub(super) fn left_out(&self) -> impl Iterator<Item = String> {
         let notes = [
             (&self.has_textures, "its textures are left out"),
@@ -78,7 +78,7 @@ impl<'a> Libraries<'a> {
         notes.map(|(_, note)| note.to_owned())
     }
 
-    /// What is to be said about files that could not be read, or materials that are not in them.
+    /// The note on material files that could not be read, or materials that are not in them.
     pub(super) fn note(&self) -> Option<String> {
         if let Some(missing) = self.missing.take() {
             let name = excerpt(&missing, LONGEST_NAME);
@@ -98,7 +98,7 @@ impl<'a> Libraries<'a> {
         ))
     }
 
-    /// A line that names a material, without a remark behind the name: there may be a `#` in it.
+    /// Returns a `usemtl` line without a comment after the name. The name itself may contain a `#`.
     pub(super) fn known_name<'t>(&self, line: &'t str) -> &'t str {
         let name = |line: &'t str| Some(line.split_once([' ', '\t'])?.1.trim());
         let names = self.names.borrow();
@@ -110,7 +110,8 @@ impl<'a> Libraries<'a> {
         if let Some(without) = without.filter(|without| is_known(without)) {
             return without;
         }
-        // Some names mean none; and where no file is read at all, nobody expects colours, or it is said already.
+        // Some names stand for no material. If no file is read at all, no colours are expected, or the missing file
+        // is noted already.
         if let Some(name) = name(line).filter(|name| !NO_MATERIAL.contains(name)) {
             let place = if names.is_empty() {
                 &self.early
@@ -122,7 +123,7 @@ impl<'a> Libraries<'a> {
         line
     }
 
-    /// Reads one. One that is not there or not in the folder, or cannot be read, only means that there are no colours.
+    /// Loads a material file. If it is missing, outside the folder or unreadable, the mesh merely has no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
         let loaded = self.load_known(name);
         if let Ok((_, numbers)) = &loaded {
@@ -135,14 +136,14 @@ impl<'a> Libraries<'a> {
     }
 
     fn load_known(&self, name: &Path) -> MTLLoadResult {
-        // Exporters on Windows write its separators.
+        // Exporters on Windows write backslashes.
         let name = name.to_string_lossy().replace('\\', "/");
         let name = name.trim_matches('"');
-        // The folder that others write may be one of theirs.
+        // A path may be one of the machine that wrote it: try the file name alone.
         let beside = || self.text(name.rsplit('/').next()?);
         let text = match self.text(name).or_else(beside) {
             Some(text) => text,
-            // Several files may be named in one line, or one whose name has spaces.
+            // A line may name several files, or one whose name contains spaces.
             None => name
                 .split_whitespace()
                 .filter_map(|name| self.text(name))
@@ -164,7 +165,7 @@ impl<'a> Libraries<'a> {
         let lines = lines.filter(|line| is_color(line));
         let kept = lines.collect::<Vec<_>>().join("\n");
         let (mut materials, mut numbers) = tobj::load_mtl_buf(&mut kept.as_bytes())?;
-        // Behind a name there may be a remark. Some names have a `#` themselves: `Material #25`.
+        // A comment may follow a name. Some names contain a `#` themselves: `Material #25`.
         for (number, material) in materials.iter_mut().enumerate() {
             let before = material.name.split_once("# ").map(|(name, _)| name);
             let name = before.filter(|name| name.ends_with([' ', '\t']));
@@ -176,23 +177,23 @@ impl<'a> Libraries<'a> {
         Ok((materials, numbers))
     }
 
-    /// What is in a file.
+    /// Reads a file as text; `None` if it is not allowed, missing, or longer than what may still be read.
     fn text(&self, name: &str) -> Option<String> {
         let is_allowed = |name: &Path| stays_inside(self.folder, name);
         let name = Some(Path::new(name)).filter(|name| is_allowed(name))?;
         let name = Some(self.spelled(name)).filter(|name| is_allowed(name))?;
         let left = self.left.get();
         let bytes = read_bounded(&self.folder.join(name), left).ok()??;
-        // An empty file costs something too.
+        // Empty files have a cost too.
         self.left
             .set(left.saturating_sub(bytes.len() as u64 + 1024));
         Some(text_of(&bytes).into_owned())
     }
 
-    /// The name of a file as the disk has it: exporters on Windows do not tell capitals from other letters.
+    /// Returns the name of a file as it is spelled on disk: exporters on Windows ignore case.
     fn spelled(&self, name: &Path) -> PathBuf {
         let place = self.folder.join(name);
-        // A million files that are not there are not looked for as often.
+        // The number of searches is limited, in case a million missing files are named.
         if place.exists() || self.searches.get() == 0 {
             return name.to_owned();
         }
@@ -206,7 +207,7 @@ impl<'a> Libraries<'a> {
     }
 }
 
-/// A colour of one number is grey, which `tobj` does not know.
+/// Expands a colour of one number, which is grey, to three: `tobj` does not know the short form.
 fn whole_color(line: &str) -> Cow<'_, str> {
     let mut words = line.split_whitespace();
     match (words.next(), words.next(), words.next()) {
@@ -217,7 +218,7 @@ fn whole_color(line: &str) -> Cow<'_, str> {
     }
 }
 
-/// Whether a line is about colours and complete: `tobj` panics where a number is missing.
+/// Returns whether a line is a complete statement about colours: `tobj` panics where a number is missing.
 fn is_color(line: &str) -> bool {
     let mut words = line.split_whitespace();
     let keyword = words.next();
@@ -239,11 +240,11 @@ fn is_color(line: &str) -> bool {
     }
 }
 
-/// The colours of a material, if it says what it looks like in diffuse light.
+/// The colours of a material, if it has a diffuse colour.
 pub(super) fn colors_of(material: &Material) -> Option<PartColors> {
     let clamp = |color: [f64; 3]| color.map(|channel| channel.clamp(0.0, 1.0));
-    // The first two models have no highlights; and one as wide as with an exponent below 1, as which some write what is
-    // quite rough, would be as bright as the light on the whole side that it falls on.
+    // The first two models have no highlights. An exponent below 1, which some exporters write for rough materials,
+    // would give a highlight over the whole lit side, as bright as the light.
     let is_matte = material.illumination_model.is_some_and(|model| model < 2)
         || material.shininess.is_some_and(|exponent| exponent < 1.0);
     let specular = material.specular.filter(|_| !is_matte);

@@ -15,19 +15,19 @@ use super::polygon::{mend_fan, note_of_uncut};
 use super::text::text_of;
 use super::triangles::Triangles;
 
-/// Only positions matter: the corners of a face need no texture coordinates or normals.
+/// Only positions are used: the corners of a face need no texture coordinates or normals.
 const OPTIONS: LoadOptions = LoadOptions {
     single_index: false,
-    // Concave polygons are not fans.
+    // A fan would be wrong for concave polygons.
     triangulate: false,
     ignore_points: true,
     ignore_lines: true,
 };
 
-/// What `tobj` calls faces before the first group.
+/// The name that `tobj` gives to faces before the first group.
 const UNNAMED: &str = "unnamed_object";
 
-/// Reads the groups and objects of an OBJ file. Of each, what has one material is a part.
+/// Reads the groups and objects of an OBJ file. Each is split into one part per material.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     // Names may be in any encoding; everything else is ASCII.
     let text = &*text_of(bytes);
@@ -80,17 +80,17 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
 
 fn polygons_of(model: &Model) -> usize {
     match model.mesh.face_arities.len() {
-        // Where all faces are triangles, there are no numbers of corners.
+        // `tobj` leaves the arities empty if all faces are triangles.
         0 => model.mesh.indices.len() / 3,
         count => count,
     }
 }
 
-/// The triangles, and to `uncut` the number of faces that may cover their notches.
+/// Returns the triangles of a model, and adds to `uncut` the number of faces that may cover their notches.
 fn triangles_of(model: &Model, uncut: &mut usize) -> Result<Triangles, Fault> {
     let (points, _) = model.mesh.positions.as_chunks::<3>();
     let point = |index: usize| DVec3::from_array(points[index]);
-    // Where all faces are triangles, there are no numbers of corners.
+    // `tobj` leaves the arities empty if all faces are triangles.
     if model.mesh.face_arities.is_empty() {
         let (faces, _) = model.mesh.indices.as_chunks::<3>();
         return Triangles::weld(points.len(), point, faces.iter().copied());

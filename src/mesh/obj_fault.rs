@@ -1,13 +1,13 @@
-//! Where an OBJ file is wrong, looked for once it is known to be: `tobj` says what and not where.
+//! Locates the error in an OBJ file that `tobj` has refused: `tobj` says what is wrong, but not where.
 
 use super::error::{Fault, excerpt};
 use super::obj_lines::Kind;
 use super::triangles::FARTHEST;
 
-/// Most characters of a word that a sentence shows.
+/// Most characters of a word that an error message quotes.
 const EXCERPT: usize = 24;
 
-/// The first line that is wrong. If none is, `said` is all that is known.
+/// Finds the first faulty line. If there is none, the fault repeats `said`, the message of `tobj`.
 pub(super) fn find_fault(text: &str, said: &str) -> Fault {
     let is_point = |line: &&str| line.split_ascii_whitespace().next() == Some("v");
     let total = text.lines().filter(is_point).count();
@@ -27,7 +27,7 @@ pub(super) fn find_fault(text: &str, said: &str) -> Fault {
         let why = match keyword {
             Some("v") => {
                 before += 1;
-                // What stands in the next line cannot be judged here.
+                // Coordinates on a continuation line are not checked.
                 if goes_on { None } else { wrong_point(words) }
             }
             Some("f") => words
@@ -77,7 +77,7 @@ fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
             excerpt(word, EXCERPT)
         ));
     }
-    // A negative number counts back from the point before the face.
+    // A negative number counts backwards from the last point before the face.
     let (is_there, count) = match point {
         ..0 => (point.unsigned_abs() <= before, before),
         0 => return Some("this face names point 0; points are counted from 1".to_owned()),

@@ -1,9 +1,9 @@
-//! The lines of an OBJ file that matter here, in the one form that `tobj` reads well.
+//! Reader that passes on the lines of an OBJ file that matter, in a form that `tobj` reads reliably.
 //!
-//! Left out: texture coordinates and normals, whose numbers `tobj` can overflow on; lines and free
-//! curves; the weights or colours behind the coordinates of a point, which `tobj` wants at every
-//! point or at none. Lines that go on behind a backslash are joined. Corners are counted on the
-//! way, so that a file with too many ends before it fills the memory.
+//! Left out are texture coordinates and normals, whose indices `tobj` can overflow on; lines and free-form curves;
+//! and weights or colours after the coordinates of a point, which `tobj` accepts only on every point or on none.
+//! Lines continued by a backslash are joined. Corners are counted while reading, so that reading stops before a file
+//! with too many exhausts the memory.
 
 use std::io::{self, BufRead, Read};
 
@@ -11,7 +11,7 @@ use super::error::Fault;
 use super::limits::{check_faces, check_groups, check_points};
 use super::mtl::Libraries;
 
-/// What a line says.
+/// Kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Point,
@@ -29,7 +29,7 @@ impl Kind {
             Some("v") => Self::Point,
             Some("f") => Self::Face,
             Some("o" | "g") => Self::Group,
-            // One without a name is an error to `tobj` and nothing to a person.
+            // `usemtl` without a name is an error to `tobj`; here it has no effect.
             Some("usemtl") if line.len() > "usemtl".len() => Self::Material,
             Some("mtllib") => Self::Library,
             Some(word) if word.starts_with('#') => Self::Remark,
@@ -37,35 +37,36 @@ impl Kind {
         }
     }
 
-    /// Whether a line goes on behind a backslash: the name of a file or a group may end like this, and a remark.
+    /// Returns whether a trailing backslash continues a line of this kind: names of files and groups may end with
+    /// one, and so may comments.
     pub(super) fn can_go_on(self) -> bool {
         matches!(self, Self::Point | Self::Face | Self::Other)
     }
 }
 
-/// Gives the lines piece by piece.
+/// Implements [`BufRead`] over the lines, piece by piece.
 pub(super) struct ObjLines<'a> {
     rest: &'a str,
-    /// What is given out next.
+    /// The piece that is read next.
     piece: &'a [u8],
-    /// What comes behind the piece: a line break, or a space where the line goes on.
+    /// The separator after the piece: a line break, or a space before a continuation line.
     behind: &'static [u8],
-    /// What comes behind that, up to the end of the line.
+    /// What follows the separator, up to the end of the line.
     rest_of_line: &'a str,
-    /// The line goes on in the next of the file.
+    /// The kind of the current line, if the next line continues it.
     going_on: Option<Kind>,
     corners: usize,
     faces: usize,
     points: usize,
     groups: usize,
-    /// The material files that have been read on the way.
+    /// The material files that have been read so far.
     libraries: &'a Libraries<'a>,
-    /// For each line that begins a group or an object, how many polygons are before it.
+    /// For each line that begins a group or an object, the number of polygons before it.
     pub(super) starts: Vec<usize>,
     polygons: usize,
-    /// Whether a point has a colour.
+    /// Whether any point has a colour.
     pub(super) has_colors: bool,
-    /// Why there are no more lines although the text goes on.
+    /// The fault because of which reading stopped early.
     pub(super) fault: Option<Fault>,
 }
 
@@ -116,7 +117,7 @@ impl<'a> ObjLines<'a> {
                     point
                 }
                 Kind::Material => self.libraries.known_name(line),
-                // Names may have it in them.
+                // Only on faces: names may contain a `#`.
                 Kind::Face => line.split('#').next().unwrap_or_default(),
                 _ => line,
             };
@@ -125,7 +126,7 @@ impl<'a> ObjLines<'a> {
             if matches!(kind, Kind::Remark | Kind::Other) {
                 continue;
             }
-            // An empty piece would be the end of the text.
+            // An empty piece would signal the end of the text.
             if line.is_empty() {
                 return Ok(behind);
             }
@@ -133,7 +134,7 @@ impl<'a> ObjLines<'a> {
                 && let Some((word, name)) = line.split_once('\t')
                 && !word.contains(' ')
             {
-                // `tobj` knows a name behind a space alone.
+                // `tobj` recognises a name only after a space.
                 (self.behind, self.rest_of_line) = (b" ", name.trim_ascii_start());
                 return Ok(word.as_bytes());
             }
@@ -151,11 +152,11 @@ impl<'a> ObjLines<'a> {
             }
             Kind::Face => {
                 self.corners += line.split_ascii_whitespace().count();
-                // The first word is the `f`.
+                // Do not count the first word, `f`.
                 check_faces(self.faces + self.corners.saturating_sub(3))?;
                 if !goes_on {
                     self.faces += self.corners.saturating_sub(3);
-                    // Of fewer corners are points and lines.
+                    // Faces of fewer than three corners are points and lines, which `tobj` ignores.
                     self.polygons += usize::from(3 < self.corners);
                     self.corners = 0;
                 }
@@ -173,7 +174,7 @@ impl<'a> ObjLines<'a> {
     }
 }
 
-/// The start of a line with `v` and three numbers.
+/// Returns the start of a line: `v` and three numbers.
 fn three_numbers(line: &str) -> &str {
     let mut words = 0;
     let mut in_word = false;

@@ -1,18 +1,19 @@
-//! A piece of a mesh file that has a name and may have colours.
+//! Contents of a mesh file: named parts, which may have colours.
 
 use super::triangles::Triangles;
 
-/// What was read of a mesh file.
+/// Contents of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// The parts that have triangles, of which there is at least one.
+    /// The parts that have triangles; at least one.
     pub parts: Vec<Part>,
-    /// What of it is missing or was left out, each a part of a sentence; empty if nothing is.
+    /// Notes on what is missing or was left out, each a clause without a full stop; empty if the file was read
+    /// completely.
     pub notes: Vec<String>,
 }
 
 impl MeshFile {
-    /// One part without colours, and nothing left out.
+    /// A file with one part, without colours or notes.
     pub(super) fn of_one(name: String, triangles: Triangles) -> Self {
         let colors = None;
         let parts = vec![Part {
@@ -25,30 +26,30 @@ impl MeshFile {
     }
 }
 
-/// The note that points have colours, which scenes do not have.
+/// The note on colours of points, which scenes do not support.
 pub(super) const COLORS_OF_POINTS: &str = "colours of points or faces are left out";
 
-/// The note that something is transparent, which nothing in scenes is.
+/// The note on transparency, which scenes do not support.
 pub(super) const CLEAR: &str = "what is transparent is shown opaque";
-/// The note that something gives light of its own, which only lights do.
+/// The note on emissive materials, which scenes do not support: only lights emit light.
 pub(super) const GLOWING: &str = "what glows does not";
 
-/// A group or object of an OBJ file, a primitive of a glTF file; STL and PLY files are one part.
+/// A group or object of an OBJ file, a primitive of a glTF file, or the whole of an STL or PLY file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// What the file calls it, or the stem of the file's name. Several parts may have one name.
+    /// The name in the file, or else the stem of the file name. Not unique.
     pub name: String,
     /// Its colours, if the file has any.
     pub colors: Option<PartColors>,
-    /// Its triangles, of which there is at least one.
+    /// Its triangles; at least one.
     pub triangles: Triangles,
 }
 
-/// The colours that a file gives a part, 0–1, as a picture shows them: glTF's, which are linear
-/// light, have been converted to sRGB.
+/// The colours that a file gives a part, 0–1 and encoded for display: the linear colours of glTF have been converted
+/// to sRGB.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartColors {
-    /// What the file calls the material.
+    /// The name of the material in the file.
     pub name: String,
     /// `Kd` of MTL, or the base colour of glTF.
     pub diffuse: [f64; 3],
@@ -56,6 +57,6 @@ pub struct PartColors {
     pub specular: Option<[f64; 3]>,
     /// `Ns` of MTL: the exponent of the highlight, 0 or more.
     pub exponent: Option<f64>,
-    /// Whether it mirrors, by `illum` of MTL.
+    /// Whether it is a mirror, from `illum` of MTL.
     pub reflective: bool,
 }

@@ -1,6 +1,5 @@
-//! PLY: the header and the binary elements are read by `ply-rs-bw`, one element at a time so that
-//! nothing is stored twice. Lines of text are read here: the crate refuses `5.` and `.5`, which
-//! programs write.
+//! PLY: `ply-rs-bw` reads the header and the binary elements, one element at a time so that nothing is stored twice.
+//! Lines of text are parsed here: the crate refuses `5.` and `.5`, which programs write.
 
 use std::io::ErrorKind;
 use std::ops::Range;
@@ -16,13 +15,13 @@ use super::ply_element::{Element, is_corners, least_bytes};
 use super::polygon::{mend_fan, note_of_uncut};
 use super::triangles::{Triangles, out_of_range};
 
-/// Longest header; one without an end is not searched for gigabytes.
+/// Longest header in bytes, so that gigabytes are not searched for a missing end.
 const MAX_HEADER: usize = 1 << 20;
 
-/// Reads a PLY file; polygons become triangles.
+/// Reads a PLY file; polygons are triangulated.
 pub(super) fn read(bytes: &[u8], stem: &str) -> Result<MeshFile, Fault> {
     let parser = Parser::<Element>::new();
-    // Comments may be in any encoding, and the crate wants UTF-8.
+    // Comments may be in any encoding, but the crate requires UTF-8.
     let to_ascii = |&byte: &u8| if byte.is_ascii() { byte } else { b'?' };
     let start: Vec<u8> = bytes.iter().take(MAX_HEADER).map(to_ascii).collect();
     let mut reader = Reader::new(start.as_slice());
@@ -54,7 +53,7 @@ pub(super) fn read(bytes: &[u8], stem: &str) -> Result<MeshFile, Fault> {
     Ok(file)
 }
 
-/// Whether points or faces have colours.
+/// Returns whether points or faces have colours.
 fn has_colors(header: &Header) -> bool {
     let elements = ["vertex", "face"].map(|name| header.elements.get(name));
     let is_color = |name: &String| matches!(name.as_str(), "red" | "diffuse_red");
@@ -73,14 +72,14 @@ fn header_fault(error: &ParseError, bytes: &[u8]) -> Fault {
     }
 }
 
-/// Points, triangles, and which of those are polygons that were cut into fans.
+/// Points and triangles, and the ranges of triangles that are fans of one polygon.
 struct Polygons {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     fans: Vec<Range<usize>>,
 }
 
-/// What comes behind the header.
+/// The part of the file after the header.
 struct Body<'a> {
     parser: Parser<Element>,
     encoding: Encoding,
@@ -116,7 +115,7 @@ impl Body<'_> {
                         }
                         Ok(())
                     })?;
-                    // Nothing behind the faces matters, if the points were before.
+                    // Nothing after the faces is needed, if the points came first.
                     if points.len() == vertices && !header.elements.contains_key("tristrips") {
                         break;
                     }
@@ -137,11 +136,11 @@ impl Body<'_> {
         })
     }
 
-    /// A header may claim any number: it is held against what the file has left.
+    /// A header may claim any count: fails if the rest of the file is too short for it.
     fn check_length(&self, element: &ElementDef) -> Result<(), Fault> {
         let is_text = self.encoding == Encoding::Ascii;
         let least = least_bytes(element, is_text).saturating_mul(element.count);
-        // The last line of a text may have no end.
+        // The last line of a text may lack its line break.
         if least > self.rest.len() + usize::from(is_text) {
             return Err(Fault::new(format!(
                 "the header promises {} of `{}`, which take at least {least} bytes, and the file has {} left",
@@ -153,13 +152,13 @@ impl Body<'_> {
         Ok(())
     }
 
-    /// Reads all elements of a kind, counted from 1.
+    /// Reads all elements of a kind and passes them on, numbered from 1.
     fn each(
         &mut self,
         element: &ElementDef,
         mut take: impl FnMut(usize, Element) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
-        // Nothing is written for an element without properties, however many there are.
+        // Elements without properties take no bytes, whatever their count.
         if element.properties.is_empty() {
             return Ok(());
         }
@@ -220,7 +219,7 @@ fn ends_within(number: usize, element: &ElementDef) -> Fault {
     Fault::new(format!("the file ends within {name} {number} of {count}"))
 }
 
-/// How many vertices there are, if they are somewhere.
+/// Returns the number of vertices; fails unless the header gives them scalar coordinates.
 fn check_vertices(header: &Header) -> Result<usize, Fault> {
     let Some(element) = header.elements.get("vertex") else {
         return Err(Fault::new("the header names no element `vertex`"));
@@ -271,7 +270,7 @@ fn add_fan(
     Ok(())
 }
 
-/// Strips of triangles, one behind the other with -1 between: every other triangle of a strip is turned over.
+/// Adds triangle strips, which are separated by -1: every other triangle of a strip is turned over.
 fn add_strips(
     faces: &mut Vec<[u32; 3]>,
     number: usize,

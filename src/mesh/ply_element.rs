@@ -1,4 +1,4 @@
-//! One vertex or face of a PLY file, whichever types its numbers are written in.
+//! One vertex or face of a PLY file, for all number types.
 
 use ply_rs_bw::ply::{
     ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
@@ -6,17 +6,17 @@ use ply_rs_bw::ply::{
 
 use super::error::excerpt;
 
-/// What a mesh takes from an element.
+/// The properties of an element that a mesh needs.
 #[derive(Debug)]
 pub(super) struct Element {
-    /// Where a vertex is.
+    /// Position of a vertex.
     pub position: [f64; 3],
-    /// The vertices of a face.
+    /// Vertex indices of a face.
     pub corners: Vec<i64>,
 }
 
 impl Element {
-    /// Sets a number; all but coordinates are left out.
+    /// Sets a scalar property; all but coordinates are ignored.
     fn set_scalar(&mut self, name: &str, value: f64) {
         match name {
             "x" => self.position[0] = value,
@@ -26,7 +26,7 @@ impl Element {
         }
     }
 
-    /// Reads an element from its line in a text file, or says what is wrong with it.
+    /// Parses an element from its line in a text file, or returns what is wrong with it.
     pub(super) fn from_text(line: &str, element: &ElementDef) -> Result<Self, String> {
         let mut read = Self::new();
         let mut words = line.split_ascii_whitespace();
@@ -43,7 +43,7 @@ impl Element {
             match property.data_type {
                 PropertyType::Scalar(_) => {
                     let word = next()?;
-                    // What nobody asks for may be no number.
+                    // Properties that are not needed may be malformed.
                     if matches!(name.as_str(), "x" | "y" | "z") {
                         read.set_scalar(name, word.parse().map_err(|_| wrong(word))?);
                     }
@@ -64,7 +64,7 @@ impl Element {
     }
 }
 
-/// Whether this property is the vertices of a face.
+/// Returns whether the property holds the vertex indices of a face.
 pub(super) fn is_corners(name: &str) -> bool {
     matches!(name, "vertex_indices" | "vertex_index")
 }
@@ -106,11 +106,11 @@ fn widened<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
     list.into_iter().map(Into::into).collect()
 }
 
-/// Fewest bytes that an element takes in a file.
+/// Least number of bytes that an element takes in a file.
 pub(super) fn least_bytes(element: &ElementDef, is_text: bool) -> usize {
     let properties = element.properties.values();
     if is_text {
-        // A digit and what is behind it.
+        // A digit and a separator for each property.
         return 2 * properties.len();
     }
     let bytes = properties.map(|property| match &property.data_type {

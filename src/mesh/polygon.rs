@@ -1,24 +1,25 @@
-//! Faces of more than three corners.
+//! Triangulation of faces with more than three corners.
 
 use glam::{DVec2, DVec3};
 
 use crate::words::counted;
 
-/// Corners of the largest polygon whose ears are looked for: that takes the square of their number, as a rule.
+/// Most corners of a polygon that is cut by ear clipping, which usually takes quadratic time.
 const MOST_CORNERS: usize = 4096;
-/// What is a straight line but for rounding turns by no more than this share of a square around the polygon.
+/// Largest turn (twice a triangle's area) that counts as straight, as a share of the squared size of the polygon, to
+/// allow for rounding.
 const ROUNDED: f64 = 1e-12;
 
-/// Cuts a polygon anew that was cut into a fan around its first corner, where that leaves its outline: where it is
-/// concave, ears are clipped (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). What has no
-/// ear because it crosses itself, or has more than 4096 corners, stays a fan; whether it has that many.
+/// Replaces a fan around a polygon's first corner that leaves the outline, as in a concave polygon, by ear clipping
+/// (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). Keeps the fan if there is no ear because
+/// the polygon crosses itself, or if it has more than 4096 corners; returns `true` in the latter case.
 pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bool {
     let area = |[a, b, c]: [u32; 3]| {
         let a = point(a);
         (point(b) - a).cross(point(c) - a)
     };
     let normal: DVec3 = fan.iter().map(|&face| area(face)).sum();
-    // All of its parts on one side: the first corner sees the whole outline.
+    // If all triangles face the same side, the first corner sees the whole outline.
     if fan.len() < 2 || fan.iter().all(|&face| area(face).dot(normal) >= 0.0) {
         return false;
     }
@@ -43,7 +44,8 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bo
     false
 }
 
-/// The note of faces of which [`mend_fan`] says that they have too many corners, if there are any.
+/// Returns the note about `count` faces that [`mend_fan`] found to have too many corners, or `None` if there are
+/// none.
 pub(super) fn note_of_uncut(count: usize) -> Option<String> {
     (count > 0).then(|| {
         let faces = counted(count, "face");
@@ -51,7 +53,7 @@ pub(super) fn note_of_uncut(count: usize) -> Option<String> {
     })
 }
 
-/// A point without the axis along which the polygon is largest; what turns left around its normal turns left.
+/// Projects a point along the largest axis of the normal, so that what is counter-clockwise around it stays so.
 fn seen_along(normal: DVec3, point: DVec3) -> DVec2 {
     let size = normal.abs();
     if size.x >= size.y && size.x >= size.z {
@@ -63,12 +65,13 @@ fn seen_along(normal: DVec3, point: DVec3) -> DVec2 {
     }
 }
 
-/// Twice the area of a triangle, above 0 where it turns left.
+/// Twice the signed area of a triangle, positive if it is counter-clockwise.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
-/// The triangles of a polygon that turns left, by the places of its corners.
+/// Cuts a counter-clockwise polygon into triangles, which are given by indices into `points`; `None` if it cannot be
+/// cut.
 fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     let rounded = rounding(points);
     let mut left: Vec<usize> = (0..points.len()).collect();
@@ -81,13 +84,13 @@ fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
         let turn_at = |at: &usize| turn_of(points, around(*at)).abs();
         let is_ear = is_ear(points, &left, around(at), rounded);
         if is_ear || tried == count {
-            // Where there is no ear, a corner on a straight line is taken out, with a triangle that has no area.
+            // Without an ear, a corner on a straight line is cut off, as a triangle without area.
             let straightest = || (0..count).min_by(|a, b| turn_at(a).total_cmp(&turn_at(b)));
             let cut = if is_ear { Some(at) } else { straightest() };
             let cut = cut.filter(|at| is_ear || turn_at(at) <= rounded)?;
             ears.push(around(cut));
             left.remove(cut);
-            // The corner before may be one now, as along an arc.
+            // The corner before it may have become an ear, as along an arc.
             at = cut.checked_sub(1).unwrap_or(left.len() - 1);
             tried = 0;
         } else {
@@ -100,7 +103,7 @@ fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     Some(ears)
 }
 
-/// How far points turn at most that are on a straight line but for rounding.
+/// Returns the largest turn of three points that counts as straight, for a polygon of this size.
 fn rounding(points: &[DVec2]) -> f64 {
     let start = points.first().copied().unwrap_or_default();
     let around = points.iter().fold((start, start), |(least, most), &point| {
@@ -114,12 +117,12 @@ fn turn_of(points: &[DVec2], [a, b, c]: [usize; 3]) -> f64 {
     turn(points[a], points[b], points[c])
 }
 
-/// Whether a corner can be cut off: it turns left, and no other corner is in the triangle.
+/// Returns whether a corner can be cut off: it is convex, and no other corner lies in its triangle.
 fn is_ear(points: &[DVec2], left: &[usize], ear: [usize; 3], rounded: f64) -> bool {
     let [a, b, c] = ear.map(|corner| points[corner]);
     let is_within = |&other: &usize| {
         let p = points[other];
-        // Corners that touch it are those of cuts that lead to holes.
+        // Points equal to a corner of the ear come from bridge edges that lead to holes.
         p != a
             && p != b
             && p != c
@@ -150,7 +153,8 @@ mod tests {
         faces.iter().map(area).collect()
     }
 
-    /// How large the triangles of a mended polygon are, each by itself and all in one: the same where none covers another.
+    /// Total area of the triangles of a mended polygon, and the length of their summed area vectors: equal if no
+    /// triangle covers another.
     fn sizes(points: &[DVec3]) -> (f64, f64) {
         let areas = areas(points, &mended(points));
         let whole: DVec3 = areas.iter().sum();
@@ -159,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_notch_stays_open_seen_from_anywhere() {
-        // Its area is 10 of the 16 of the square, and the fan around its first corner covers the notch.
+        // Its area is 10 of the square's 16, and the fan around its first corner covers the notch.
         let outline = [(0.0, 4.0), (0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0)];
         for start in 0..outline.len() {
             for (x, y) in [
@@ -188,7 +192,7 @@ mod tests {
 
     #[test]
     fn corners_on_straight_edges_are_rounded_and_cut() {
-        // An L with corners in the middle of its edges, turned, with eight decimals; its area is 4.
+        // An L with extra corners in the middle of its edges, rotated, with eight decimals; its area is 4.
         let outline = [
             (1.782_414_72, -0.907_192_24),
             (0.891_207_36, -0.453_596_12),
@@ -208,7 +212,8 @@ mod tests {
 
     #[test]
     fn arcs_are_cut_in_a_moment() {
-        // A strip along half a circle; looked at all around after each cut, it takes seconds.
+        // A strip along half a circle. If every cut restarted the search at the first corner, this would take
+        // seconds.
         let corner = |at: u32| {
             let (along, radius) = if at < 2000 {
                 (at, 10.0)

@@ -1,4 +1,4 @@
-//! Solids that are made, not read: closed, around the origin, clockwise seen from outside.
+//! Generated solids: closed, centred on the origin, wound clockwise seen from outside.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -7,25 +7,25 @@ use glam::DVec3;
 
 use super::triangles::Triangles;
 
-/// How often each face of the icosahedron is divided in four.
+/// How often each face of the icosahedron is divided into four.
 const HALVINGS: u32 = 2;
 
-/// Sides of what is round.
+/// Sides of round solids.
 const SIDES: u32 = 48;
 /// Sides of the tube of a torus.
 const TUBE_SIDES: u32 = 24;
 
-/// Largest angle between faces of what is round, in degrees: they look curved, and its rims stay sharp.
+/// Largest angle in degrees between faces that are shaded as one surface: round sides look curved, rims stay sharp.
 const ROUND: f64 = 30.0;
 
-/// A solid that can be made.
+/// A kind of solid.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// Makes one of a given size.
+    /// Makes one of the given size.
     pub make: fn(f64) -> Triangles,
-    /// Degrees up to which its faces are shaded as one; 0 for what has flat faces.
+    /// Largest angle in degrees between faces that are shaded as one surface; 0 for flat faces.
     pub smooth: f64,
 }
 
@@ -45,7 +45,7 @@ const fn round(name: &'static str, make: fn(f64) -> Triangles) -> Solid {
     }
 }
 
-/// What can be made.
+/// All kinds of solids.
 pub const SOLIDS: [Solid; 6] = [
     flat("Box", cuboid),
     flat("Tetrahedron", tetrahedron),
@@ -91,8 +91,8 @@ fn tetrahedron(size: f64) -> Triangles {
     Triangles::of(points.to_vec(), faces)
 }
 
-/// What an outline of (radius, height), from the top down, leaves when it is spun around y; closed by flat
-/// ends where it does not come to a point.
+/// Makes the solid of revolution of an outline of (radius, height), from the top down, around y. Ends that do not
+/// come to a point are closed by flat discs.
 fn spun(outline: &[(f64, f64)]) -> Triangles {
     let mut points = Vec::new();
     let mut rings: Vec<Vec<u32>> = Vec::new();
@@ -134,7 +134,7 @@ fn torus(size: f64) -> Triangles {
     Triangles::of(points, between(&rings))
 }
 
-/// The faces between rings of points, each of which lies below or outside the one before.
+/// The faces between consecutive rings of points, each of which lies below or outside the previous one.
 fn between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
     let mut faces = Vec::new();
     for [upper, lower] in rings.array_windows() {
@@ -152,7 +152,7 @@ fn between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
     faces
 }
 
-/// A ball of 320 triangles around the origin: an icosahedron whose faces are divided.
+/// A sphere of 320 triangles around the origin: a subdivided icosahedron.
 pub fn icosphere(radius: f64) -> Triangles {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
     let mut points = Vec::new();
@@ -191,9 +191,9 @@ pub fn icosphere(radius: f64) -> Triangles {
     Triangles::of(points, faces)
 }
 
-/// The triples of points that are neighbours, clockwise seen from outside.
+/// Finds all triples of neighbouring points, clockwise seen from outside.
 fn nearest_triples(points: &[DVec3]) -> Vec<[u32; 3]> {
-    // The edges of the icosahedron above are 2 long, all other distances more than 3.
+    // The edges of the icosahedron above have length 2, all other distances are more than 3.
     let is_edge = |a: usize, b: usize| (points[a] - points[b]).length() < 2.5;
     let count = points.len();
     let mut faces = Vec::new();
@@ -237,7 +237,8 @@ mod tests {
             assert!((0.3..8.1).contains(&volume), "{name}: {volume}");
             let (low, high) = solid.bounds().expect("it has an end");
             assert!((high - low).max_element() <= 2.0 + 1e-12, "{name}");
-            // What is said to be round is made finely enough to look so, and has no rims that would vanish.
+            // Solids that are marked as round must be fine enough to look so, and have no rims that would be smoothed
+            // away.
             let normals: Vec<DVec3> = solid
                 .corners()
                 .map(|[a, b, c]| (c - a).cross(b - a))

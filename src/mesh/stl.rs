@@ -1,4 +1,4 @@
-//! STL, text and binary, read by `mesh-loader`.
+//! STL, as text and binary, read by `mesh-loader`.
 
 use glam::DVec3;
 use mesh_loader::Scene;
@@ -8,16 +8,16 @@ use super::limits::{check_faces, check_points};
 use super::part::MeshFile;
 use super::triangles::Triangles;
 
-/// Bytes before the first triangle of a binary file: 80 of any content, and how many there are.
+/// Bytes before the first triangle of a binary file: 80 arbitrary ones, and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of a triangle of a binary file.
+/// Bytes per triangle of a binary file.
 const TRIANGLE: usize = 50;
-/// What a text begins with.
+/// First word of a text file.
 const WORD: &[u8] = b"solid";
-/// Shortest triangle of a text file.
+/// Least number of bytes per triangle of a text file.
 const SHORTEST: usize = 80;
 
-/// Reads an STL file; several solids are one part.
+/// Reads an STL file; several solids become one part.
 pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let is_text = is_text(&bytes);
     let ((name, vertices), note, loaded) = if is_text {
@@ -32,7 +32,7 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     };
     let scene = loaded.map_err(|error| fault_of(&error, is_text))?;
     drop(bytes);
-    // Each face has its own three points.
+    // Each face has three points of its own.
     let solids = scene.meshes.into_iter().map(|mesh| mesh.vertices);
     let points = solids.reduce(|mut all, more| {
         all.extend(more);
@@ -55,7 +55,7 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     Ok(file)
 }
 
-/// Whether this is the text form. The header of a binary file may begin with the same word.
+/// Returns whether this is the text form. The header of a binary file may begin with the same word.
 pub(super) fn is_text(bytes: &[u8]) -> bool {
     let start = bytes.trim_ascii_start();
     let is_word = start.len() > WORD.len() && start[..WORD.len()].eq_ignore_ascii_case(WORD);
@@ -65,8 +65,9 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
         && !bytes.iter().take(HEADER).any(|&byte| byte == 0)
 }
 
-/// How many triangles the header of a binary file promises, and how long the file is then. Whoever writes a file in one
-/// go, before it knows how many there are, leaves 0 or the largest number there: then it is as long as it is.
+/// Returns the number of triangles that the header of a binary file promises, and the file length that follows from
+/// it. Programs that write in one pass, before they know the number, leave 0 or the largest number there: then the
+/// number follows from the length of the file.
 fn promised(bytes: &[u8]) -> Option<(usize, u64)> {
     let (_, count) = bytes.get(..HEADER)?.split_last_chunk()?;
     let found = bytes.len() - HEADER;
@@ -77,7 +78,7 @@ fn promised(bytes: &[u8]) -> Option<(usize, u64)> {
     Some((count, HEADER as u64 + count as u64 * TRIANGLE as u64))
 }
 
-/// Leaves what the header promises; what there is to say of the rest.
+/// Truncates a binary file to what its header promises; returns the note on the rest, if there is one.
 fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
     let found = bytes.len();
     let Some((count, length)) = promised(bytes) else {
@@ -92,19 +93,19 @@ fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
     }
     check_faces(count)?;
     let more = found as u64 - length;
-    // Some programs write a few bytes of their own there.
+    // Fewer bytes need no note: some programs append a few of their own.
     let note = (more >= TRIANGLE as u64).then(|| {
         format!("{more} bytes behind the {count} triangles that the header promises are not read")
     });
     bytes.truncate(HEADER + count * TRIANGLE);
-    // So that no header is taken for text.
+    // So that the reader does not take the header for text.
     bytes[..HEADER].fill(0);
     Ok(note)
 }
 
-/// Makes the text what the reader wants: keywords small, everything else ASCII, a space behind
-/// `solid`. What it does not take for text it would read as binary numbers. Returns the name, and the points with all
-/// their decimals, which the reader rounds.
+/// Prepares the text for the reader: everything lower-case, anything but ASCII replaced, a space after `solid`. The
+/// reader would take text that it does not recognise for binary data. Returns the name, and the points in full
+/// precision, which the reader rounds.
 fn prepare_text(bytes: &mut Vec<u8>) -> Result<(Option<String>, Vec<DVec3>), Fault> {
     let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
     let start = bytes.len() - bytes.trim_ascii_start().len();
@@ -123,28 +124,28 @@ fn prepare_text(bytes: &mut Vec<u8>) -> Result<(Option<String>, Vec<DVec3>), Fau
         };
     }
     let vertices = take_vertices(bytes);
-    // Faces cannot be counted before they are read; there are no more than this.
+    // Facets are counted only if the length of the file allows too many.
     if check_faces(bytes.len() / SHORTEST).is_err() {
         let facets = bytes.windows(8).filter(|window| *window == b"endfacet");
         check_faces(facets.count())?;
     }
     bytes.insert(start + WORD.len(), b' ');
-    // A length that no binary file has.
+    // Pad to a length that no binary file has.
     while bytes.len() < HEADER || (bytes.len() - HEADER) % TRIANGLE != TRIANGLE / 2 {
         bytes.push(b' ');
     }
     Ok(((!name.is_empty()).then_some(name), vertices))
 }
 
-/// The numbers of all points. Nobody looks at normals, of which zeros are left: of a face without an area some programs
-/// write what is no number: `-nan(ind)`.
+/// Returns the coordinates of all points. Replaces normals, which are not used, by zeros: for faces without an area
+/// some programs write ones that are not numbers, such as `-nan(ind)`.
 fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
     let (mut at, mut left, mut is_facet) = (0, 0, false);
     let (mut vertices, mut point, mut read) = (Vec::new(), [0.0; 3], None);
     let mut is_loop = false;
     while at < text.len() {
         if text[at].is_ascii_whitespace() {
-            // What is missing in a line is not taken from the next.
+            // A number that is missing in a line is not taken from the next.
             left = if text[at] == b'\n' { 0 } else { left };
             at += 1;
             continue;
@@ -170,7 +171,7 @@ fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
                     vertices.push(DVec3::from_array(point));
                 }
             }
-            // Names may have this word, too.
+            // Names may contain the word `vertex`, too.
             None if is_loop && word == b"vertex" => read = Some(0),
             None => is_loop = word == b"loop",
         }
@@ -178,7 +179,7 @@ fn take_vertices(text: &mut [u8]) -> Vec<DVec3> {
     vertices
 }
 
-/// Reads a text; later solids without a name need the space, too.
+/// Reads a text. Later solids without a name need a space after `solid`, too.
 fn load_text(bytes: &[u8]) -> std::io::Result<Scene> {
     let loaded = mesh_loader::stl::from_slice(bytes);
     match &loaded {
@@ -193,7 +194,7 @@ fn load_text(bytes: &[u8]) -> std::io::Result<Scene> {
     }
 }
 
-/// The reader's sentence ends with a line and a column in brackets.
+/// Converts an error of the reader, whose message ends with line and column in brackets.
 fn fault_of(error: &std::io::Error, is_text: bool) -> Fault {
     let said = error.to_string();
     let place = said.rsplit_once(" (").and_then(|(said, place)| {

@@ -1,17 +1,17 @@
-//! Texts of mesh files, in any encoding and with any line breaks.
+//! Decoding of text in mesh files, in any encoding and with any line breaks.
 
 use std::borrow::Cow;
 
-/// What some editors write before a text.
+/// Byte order mark, which some editors write at the start of a text.
 const MARK: &[u8] = "\u{feff}".as_bytes();
 
-/// Without a byte order mark.
+/// Strips a byte order mark.
 pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(MARK).unwrap_or(bytes)
 }
 
-/// A text whose lines are in UTF-8, or else in Latin-1, in which different names stay different; with line breaks as we
-/// know them: old programs end lines with a carriage return alone.
+/// Decodes a text. Lines that are not UTF-8 are read as Latin-1, which keeps different names different. Carriage
+/// returns alone, with which old programs end lines, become line feeds.
 pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     if let Some(text) = from_utf16(bytes) {
         return Cow::Owned(text);
@@ -39,7 +39,7 @@ pub(super) fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// A text of 16 bits a letter, as some editors on Windows save it, with the mark that tells their order.
+/// Decodes UTF-16, as some editors on Windows save it, if there is a byte order mark.
 fn from_utf16(bytes: &[u8]) -> Option<String> {
     let (order, bytes): (fn([u8; 2]) -> u16, _) = match bytes {
         [0xff, 0xfe, rest @ ..] => (u16::from_le_bytes, rest),

@@ -1,4 +1,4 @@
-//! Points and triangles, and how what a file says becomes them.
+//! Points and triangles, and how they are made from the contents of a file.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::error::Fault;
 use super::limits::{check_faces, check_points};
 
-/// Points and triangles. Faces are wound clockwise seen from outside: the files'
-/// counter-clockwise is turned by the reader.
+/// Points and triangles. Faces are wound clockwise seen from outside: the readers turn the counter-clockwise faces of
+/// files.
 #[derive(Clone, Debug, Default)]
 pub struct Triangles {
     points: Vec<DVec3>,
@@ -25,11 +25,11 @@ impl PartialEq for Triangles {
 }
 
 impl Triangles {
-    /// Triangles as they are: faces clockwise seen from outside.
+    /// Makes triangles of points and faces as they are: faces clockwise seen from outside.
     ///
     /// # Errors
-    /// A sentence without its full stop: no faces, too many, one that names a point that is not there, or
-    /// a point that is no place.
+    /// A sentence without its full stop, if there are no faces or too many, if a face refers to a missing point, or
+    /// if a coordinate is not finite or out of range.
     pub fn new(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Result<Self, String> {
         check_points(points.len()).map_err(|fault| fault.to_string())?;
         check_faces(faces.len()).map_err(|fault| fault.to_string())?;
@@ -50,7 +50,7 @@ impl Triangles {
     }
 
     pub(super) fn of(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Self {
-        // A point that no face has is nowhere.
+        // Points without a face do not count.
         let corners = faces.as_flattened().iter();
         let boxes = corners.map(|&corner| (points[corner as usize], points[corner as usize]));
         let bounds = boxes.reduce(|(low, high), (point, _)| (low.min(point), high.max(point)));
@@ -82,19 +82,19 @@ impl Triangles {
         })
     }
 
-    /// The places of the corners.
+    /// The positions of the points.
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
-    /// The three points of each triangle, by their indices.
+    /// The three point indices of each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// About how many bytes they take as text in a scene file.
+    /// Estimated number of bytes that they take as text in a scene file.
     pub fn bytes_of_text(&self) -> u64 {
-        // Of some points, the digits; of faces, the largest.
+        // Digits of points are averaged over a sample; those of faces are taken from the largest index.
         let step = self.points.len() / MEASURED_POINTS + 1;
         let digits = |point: &DVec3| format!("{}{}{}", point.x, point.y, point.z).len();
         let some = self.points.iter().step_by(step);
@@ -112,15 +112,15 @@ impl Triangles {
         self.faces.iter().map(corners)
     }
 
-    /// Smallest and largest corner of the box around them; `None` around nothing.
+    /// Smallest and largest corner of the bounding box; `None` if there are no faces.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         self.bounds
     }
 
-    /// Makes a mesh of the triangles of a file, which are wound counter-clockwise: equal points
-    /// become one, faces without an area and exact duplicates are dropped.
+    /// Makes a mesh of the triangles of a file, which are wound counter-clockwise: equal points are merged, faces
+    /// without an area and exact duplicates are dropped.
     ///
-    /// `point` is asked for numbers under `count` only.
+    /// `point` is called for indices below `count` only.
     pub(super) fn weld(
         count: usize,
         point: impl Fn(usize) -> DVec3,
@@ -132,7 +132,7 @@ impl Triangles {
             points: Vec::new(),
             faces: Vec::new(),
             numbers: vec![UNKNOWN; count],
-            // Grown on demand: places in a table that is too large are far apart, which is slow.
+            // Grown on demand: an oversized table scatters its entries in memory, which is slow.
             places: HashMap::new(),
         };
         for (number, corners) in faces.enumerate() {
@@ -158,13 +158,13 @@ impl Triangles {
         Ok(Self::of(points, faces))
     }
 
-    /// One mesh of several.
+    /// Merges several meshes into one.
     pub(super) fn join<'a>(parts: impl Iterator<Item = &'a Self>) -> Result<Self, Fault> {
         let (mut points, mut faces) = (Vec::new(), Vec::new());
         for part in parts {
             let first = points.len() as u32;
             points.extend_from_slice(&part.points);
-            // As in a file, because welding turns them.
+            // Counter-clockwise as in a file, because welding turns them.
             faces.extend(
                 part.faces
                     .iter()
@@ -175,30 +175,30 @@ impl Triangles {
     }
 }
 
-/// Of about so many points the digits are counted.
+/// Number of points, roughly, whose digits are counted.
 const MEASURED_POINTS: usize = 100;
 /// Bytes of brackets, commas and spaces around three numbers in a scene file.
 const AROUND: usize = 8;
-/// Points, or faces, that are hashed at once.
+/// Points or faces that are hashed at once.
 const HASHED: usize = 1024;
 
-/// Largest coordinate, in world units: what a scene may hold.
+/// Largest absolute coordinate in a scene, in world units.
 pub const FARTHEST: f64 = 1e12;
 
-/// The sentence for a point that is nowhere.
+/// The error message for a point that is not finite or out of range.
 fn not_a_place(point: usize) -> String {
     format!("point {point} has a coordinate that is no finite number within 1e12 of 0")
 }
 
-/// The sentence for a face that names a point that is not there; both are counted as in the file.
+/// The fault of a face that refers to a missing point; both numbers are as they are counted in the file.
 pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: usize) -> Fault {
     Fault::new(format!(
         "face {face} names point {point}, and there are only {count}, counted from 0"
     ))
 }
 
-/// Whether every edge of some triangles, given by their corners, is passed once in each direction; points in one place
-/// are one.
+/// Returns whether the triangles, given by their corners, form closed surfaces: every edge occurs once in each
+/// direction. Points at the same position are the same.
 pub fn are_closed(triangles: impl Iterator<Item = [DVec3; 3]>) -> bool {
     let mut edges: HashMap<([u64; 3], [u64; 3]), u32> = HashMap::new();
     for corners in triangles {
@@ -212,20 +212,20 @@ pub fn are_closed(triangles: impl Iterator<Item = [DVec3; 3]>) -> bool {
         .all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
 }
 
-/// A place as a key: places are one where their coordinates are equal.
+/// A hash key for a position: equal positions have equal keys.
 pub fn place_key(point: DVec3) -> [u64; 3] {
-    // Zero has two signs and is one place.
+    // Adding zero turns −0 into 0, which is the same position.
     (point + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
-/// A point that no face has named yet.
+/// Marks a point that no face has used yet.
 const UNKNOWN: u32 = u32::MAX;
 
-/// A mesh on its way.
+/// A mesh that is being welded.
 struct Welder {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
-    /// The number in the mesh of each point of the file.
+    /// For each point of the file, its index in the mesh.
     numbers: Vec<u32>,
     places: HashMap<[u64; 3], u32>,
 }
@@ -253,11 +253,10 @@ impl Welder {
     }
 }
 
-/// Keeps the first of equal faces. Sorting takes half as long as a hash set, whose places are far
-/// apart in memory.
+/// Keeps the first of equal faces. Sorting takes half as long as a hash set, whose entries are scattered in memory.
 fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
     let key = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
-        // The same triangle may start at another corner.
+        // Equal triangles may start at different corners.
         least if least == b => [b, c, a],
         least if least == c => [c, a, b],
         _ => [a, b, c],
@@ -293,12 +292,12 @@ mod tests {
         let points = [DVec3::ONE, DVec3::ZERO, DVec3::X, DVec3::Y, -DVec3::ZERO];
         let faces = [
             [1, 2, 3],
-            // The same, from another corner and with the other zero.
+            // The same face, from another corner and with the other zero.
             [3, 4, 2],
             // No area.
             [1, 4, 2],
             [1, 1, 3],
-            // The other side is another face.
+            // The other side is a different face.
             [3, 2, 1],
         ];
         let triangles = weld(&points, &faces).expect("a mesh");

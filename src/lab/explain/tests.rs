@@ -3,7 +3,7 @@ use crate::scene::{EXAMPLES, Precision, SphereMethod};
 
 const SIDE: usize = 40;
 
-/// Channels that differ by more than a level from the picture of the tracer.
+/// The number of channels that differ by more than a level from the picture of the tracer.
 fn differences(scene: &Scene) -> usize {
     let request = RenderRequest {
         precision: Precision::Double,
@@ -30,7 +30,7 @@ fn differences(scene: &Scene) -> usize {
 fn the_terms_add_up_to_what_the_tracer_draws() {
     for example in &EXAMPLES {
         let mut scene = example.document().scene;
-        // A ray against each of 24,000 faces takes long.
+        // Testing every ray against each of 24,000 faces takes too long.
         if scene.faces() > 1000 {
             continue;
         }
@@ -52,7 +52,7 @@ fn what_is_drawn_is_what_the_chosen_formulas_come_to() {
     scene.render.reflection_limit = 3;
     let framing = scene.camera.framing().expect("a basis");
     let mut far = scene.clone();
-    // A thousand radii away, the classic formula shades a ball by itself in single precision.
+    // At a distance of a thousand radii, the classic formula in single precision shades a ball wrongly.
     far.objects.retain(|object| object.name == "Sphere 1");
     far.objects[0].shape = crate::scene::Sphere {
         center: DVec3::new(0.0, 0.0, -30_000.0),
@@ -83,7 +83,7 @@ fn what_is_drawn_is_what_the_chosen_formulas_come_to() {
 #[test]
 fn what_stands_before_a_light_is_named() {
     let scene = Scene::demo();
-    // Sphere 1 over the floor, Light 1 above to the left.
+    // A point on the floor with Sphere 1 between it and Light 1, which is above to the left.
     let lamp = scene.lights[0].position;
     let ball = scene.objects[0].shape.position();
     let towards = (ball - lamp).normalize();

@@ -1,4 +1,4 @@
-//! The basis of a camera that looks nearly straight up, and after many turns.
+//! The basis of a camera that looks almost straight up, and of one after many turns.
 
 use glam::{DMat3, DVec3};
 
@@ -8,18 +8,18 @@ use super::subject::MapSubject;
 use crate::scene::{Camera, Orientation};
 use crate::simd::Vec3;
 
-/// Angles from straight up, in degrees.
+/// Angles from the vertical, in degrees.
 const FROM_POLE: [f64; 8] = [45.0, 1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 0.0];
-/// Frames of turning.
+/// Numbers of frames in which the camera turns.
 const FRAMES: [f64; 6] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 200;
-/// A roll that can be seen at the border of a picture of 1024 pixels, in radians.
+/// Roll in radians that is visible at the border of a picture of 1024 pixels.
 const VISIBLE_ROLL: f64 = 1e-3;
-/// How far from orthonormal a basis may be: a tenth of a pixel in 1024.
+/// Allowed deviation of a basis from orthonormality: a tenth of a pixel in 1024.
 const CROOKED: f64 = 1e-4;
 
-/// One map for each way of keeping a camera level at the pole, and of keeping it through turns.
+/// One map for each way of keeping a camera level at the pole, and one for each way of storing it through turns.
 pub fn maps(effort: u32) -> Vec<Map> {
     let across = || Axis::new("degrees from the pole", &FROM_POLE);
     let pole = |name: &'static str, is_default, right: fn(f64, f64) -> Option<DVec3>| {
@@ -50,7 +50,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     ]
 }
 
-/// Whether the right of the picture is not at right angles to the yaw.
+/// Returns whether the camera's right is not the horizontal direction that belongs to the yaw.
 fn leans(number: u64, degrees: f64, right: fn(f64, f64) -> Option<DVec3>) -> bool {
     let yaw = (scattered(number, 0) * 2.0 - 1.0) * std::f64::consts::PI;
     let pitch = (90.0 - degrees).to_radians();
@@ -67,7 +67,7 @@ fn by_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
     Some(angles.apply(&Camera::default()).basis()?.x_axis)
 }
 
-/// u = up × w with the world's up, in single precision: what a first program does.
+/// u = up × w with the world's up, in single precision: as in a typical first program.
 fn by_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
     let (yaw, pitch) = (yaw as f32, pitch as f32);
     let look = Vec3::new(
@@ -92,7 +92,7 @@ fn is_crooked(basis: &DMat3) -> bool {
     !errors.iter().all(|error| error.abs() <= CROOKED)
 }
 
-/// A tenth of a degree in each frame, to and fro in pitch.
+/// Yaw and pitch of one frame: a tenth of a degree each, the pitch to and fro.
 fn step(frame: u64) -> (f64, f64) {
     let tenth = 0.1_f64.to_radians();
     (
@@ -105,7 +105,7 @@ fn step(frame: u64) -> (f64, f64) {
     )
 }
 
-/// The angles are kept, and the basis is made from them.
+/// Stores the angles, and computes the basis from them.
 fn rebuilt(frames: u64) -> DMat3 {
     let mut angles = Orientation::default();
     for frame in 0..frames {
@@ -116,7 +116,7 @@ fn rebuilt(frames: u64) -> DMat3 {
     basis.unwrap_or(DMat3::NAN)
 }
 
-/// The basis itself is turned by small matrices, frame after frame.
+/// Rotates the stored basis by a small matrix in every frame.
 fn stepped(frames: u64) -> DMat3 {
     let mut basis = [
         Vec3::new(1.0_f32, 0.0, 0.0),

@@ -1,5 +1,5 @@
-//! Surfaces in one place: a triangle that lies in a slanting plane, and two balls that are one. The earlier in the
-//! list is seen, everywhere.
+//! Coincident surfaces: a triangle in a slanting plane, and two identical balls. The earlier one in the list must be
+//! visible everywhere.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ use crate::scene::{
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
 
-/// The one rule, for pictures of every scale and place.
+/// The map of the only rule, for pictures at every scale and place.
 pub fn map() -> Map {
     let seen = |away, scale, later| levels(&scene(away, scale, later));
     Map::measure(
@@ -23,7 +23,7 @@ pub fn map() -> Map {
         (places(), scales()),
         |away, scale| {
             let (alone, both) = (seen(away, scale, false), seen(away, scale, true));
-            // Green is the later one; where nothing is there is nothing to be tried.
+            // The later surface is green. Pixels that show nothing are not tried.
             let hits = alone.iter().zip(&both).filter(|(alone, _)| alone[0] > 0.5);
             Tries::count(hits.map(|(_, both)| both[1] > 0.0))
         },
@@ -39,7 +39,8 @@ fn levels(scene: &Scene) -> Vec<[f32; 3]> {
     light(scene, &request)
 }
 
-/// Red surfaces, and green ones in the same places if they are wanted; so large, so many sizes away.
+/// Red surfaces, and if `with_later`, green ones in the same places; scaled by `scale`, and `away` sizes from the
+/// origin.
 fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
     let place = |v: DVec3| (v + AWAY * away) * scale;
     let mut scene = Scene::empty();

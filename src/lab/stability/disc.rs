@@ -1,4 +1,4 @@
-//! Rays aimed at a disc near its rim, from far away.
+//! Rays from far away that aim close to the rim of a disc.
 
 use glam::DVec3;
 
@@ -8,15 +8,15 @@ use crate::primitive::{PackedDisc, Primitive as _, Ray};
 use crate::scene::Methods;
 use crate::simd::Vec3;
 
-/// Distances in radii: beyond, the plan takes double precision.
+/// Distances in radii. For larger ones, the plan uses double precision.
 const DISTANCES: [f64; 5] = [1.5, 1e1, 1e2, 1e3, 5e3];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 300;
-/// How far from the rim rays are aimed, in radii: twenty times what the coordinates of a ray from the
-/// largest distance are rounded by.
+/// Distance from the rim at which rays aim, in radii: twenty times the rounding error of a ray's coordinates at the
+/// largest distance.
 const BESIDE: f64 = 0.006;
 
-/// The one formula: hits where the ray passes by, misses where it does not.
+/// The map of the only formula. A failure is a hit by a ray that passes the disc, or a miss by one that does not.
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("radii away", &DISTANCES);
     Map::measure(
@@ -39,7 +39,7 @@ fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
     let towards = DVec3::new(random(6), random(7), random(8)).try_normalize()?;
     let is_hit = number.is_multiple_of(2);
     let share = if is_hit { 1.0 - BESIDE } else { 1.0 + BESIDE };
-    // Seen edge-on, the rim is nowhere beside the disc.
+    // If the disc is seen edge-on, its rim is not beside it; such tries are left out.
     let cosine = normal.dot(towards).abs();
     let disc = PackedDisc {
         center: Vec3::<f32>::from_dvec3(towards * (distance * scale)),

@@ -1,5 +1,5 @@
-//! Frames of an export that are taken for unchanged: a key of the camera moves by ever less, and a frame whose picture
-//! changes must have another fingerprint.
+//! Exported frames that are wrongly taken for unchanged: one key of the camera is moved by various distances, and
+//! every frame whose picture changes must get another fingerprint.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ use crate::plan::RenderRequest;
 use crate::scene::{Animation, Camera, Easing, Interpolation, Key, Scene};
 use crate::trace::RenderControl;
 
-/// How far the key moves, in units of a scene that is some hundred of them large.
+/// Distances by which the key moves, in units of a scene whose size is some hundred of them.
 const MOVES: [f64; 7] = [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0, 10.0];
-/// Keys that are moved in each cell for a first look.
+/// Moved keys per cell for a first look.
 const TRIES: u64 = 3;
-/// Frames that are looked at for each.
+/// Frames that are compared for each.
 const FRAMES: [u64; 4] = [1, 4, 8, 11];
-/// Size of their pictures.
+/// Size of their pictures in pixels.
 const SIZE: (u32, u32) = (32, 24);
 
-/// The one rule.
+/// The map of the only rule.
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("units moved", &MOVES);
     Map::measure(
@@ -34,7 +34,7 @@ pub fn map(effort: u32) -> Map {
         ("all that decides it".to_owned(), true),
         (across, Axis::one("")),
         |by, _| {
-            // Each takes eight pictures.
+            // Each takes eight pictures, so their number grows with the square root of the effort only.
             let tries = TRIES * u64::from(effort.isqrt());
             let moved = (0..tries).flat_map(|number| changed(number, by));
             Tries::count(moved)
@@ -42,7 +42,7 @@ pub fn map(effort: u32) -> Map {
     )
 }
 
-/// For each frame whose picture has changed, whether its fingerprint has not.
+/// For each frame whose picture has changed, whether its fingerprint is unchanged.
 fn changed(number: u64, by: f64) -> Vec<bool> {
     let random = |stream| scattered(number, stream) - 0.5;
     let step = DVec3::new(random(0), random(1), random(2)).normalize_or(DVec3::X) * by;
@@ -56,7 +56,7 @@ fn changed(number: u64, by: f64) -> Vec<bool> {
     frames.collect()
 }
 
-/// The demo with a flight of three keys; the one in the middle is aside by `step`.
+/// The demo with a flight of three keys; the middle one is displaced by `step`.
 fn flight(step: DVec3) -> Arc<Scene> {
     let scene = Scene::demo();
     let at = |time: f64, aside: DVec3| Key {

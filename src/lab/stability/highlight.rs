@@ -1,4 +1,4 @@
-//! Highlights of growing sharpness.
+//! Highlights of increasing sharpness.
 
 use super::map::{Axis, Map, Tries, normal_and_aside, scattered};
 use super::subject::MapSubject;
@@ -7,12 +7,12 @@ use crate::scene::{HighlightMethod, Method as _};
 use crate::simd::Vec3;
 
 const EXPONENTS: [f64; 7] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 400;
-/// A highlight may be off by this, of 1: half a level of 255.
+/// Allowed error of a highlight, whose maximum is 1: half a level of 255.
 const HALF_LEVEL: f64 = 0.5 / 255.0;
 
-/// One map for each method: off by more than half a level.
+/// One map per method. A failure is an error of more than half a level.
 pub fn maps(effort: u32) -> Vec<Map> {
     HighlightMethod::ALL
         .iter()
@@ -41,7 +41,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
     let exponent = exponent(method, p);
     let (normal, aside) = normal_and_aside(number)?;
-    // Within the highlight: where it has fallen to e^-3 at most.
+    // Within the highlight: where it has fallen to no less than e^-3.
     let off = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
     let half = normal + aside * off;
     let (normal, half) = (
@@ -49,7 +49,7 @@ fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
         Vec3::<f32>::from_dvec3(half),
     );
     let found = f64::from(exponent.highlight(normal, half));
-    // The truth belongs to the rounded numbers, made unit vectors exactly.
+    // The true value for the rounded vectors, normalised exactly.
     let (n, h) = (
         normal.to_dvec3().try_normalize()?,
         half.to_dvec3().try_normalize()?,

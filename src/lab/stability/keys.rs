@@ -1,4 +1,4 @@
-//! Between keys of a flight: ways that leave the road, turns that lose their direction.
+//! Interpolation between keys of a flight: paths that overshoot, and rotations without a proper direction.
 
 use glam::DVec3;
 
@@ -8,20 +8,20 @@ use crate::animate::{CameraPath, motion_between};
 use crate::scene::{Camera, Key, Orientation};
 use crate::simd::Vec3;
 
-/// How much longer one segment is than its neighbours.
+/// Ratios between the lengths of the middle segment and its neighbours; either may be the longer.
 const RATIOS: [f64; 7] = [1.0, 2.0, 5.0, 1e1, 1e2, 1e3, 1e4];
-/// Angles between two viewing directions, in degrees.
+/// Angles between the viewing directions of two keys, in degrees.
 const ANGLES: [f64; 8] = [1e-6, 1e-3, 1.0, 90.0, 179.0, 179.9, 179.99, 180.0];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 40;
-/// Places that are looked at between two keys.
+/// Points that are checked between two keys.
 const PLACES: u32 = 50;
-/// Share of its length by which a segment may be left.
+/// Allowed overshoot, as a share of the length of a segment.
 const OVERSHOOT: f64 = 1e-6;
-/// How far from unit length or from right angles directions may be.
+/// Allowed deviation of directions from unit length or from right angles.
 const CROOKED: f64 = 1e-6;
 
-/// One map for each way through points on a line, and for each way between two directions.
+/// One map for each interpolation of points on a line, and for each interpolation of two directions.
 pub fn maps(effort: u32) -> Vec<Map> {
     let tries = || 0..TRIES * u64::from(effort);
     let ratios = Axis::new("longest to shortest segment", &RATIOS);
@@ -54,8 +54,8 @@ pub fn maps(effort: u32) -> Vec<Map> {
     ]
 }
 
-/// Four places on a line, the middle segment longer or shorter than its neighbours; every third
-/// flight turns back.
+/// Four points on a line, of which the middle segment is longer or shorter than its neighbours; every third flight
+/// reverses its direction there.
 fn stops(number: u64, ratio: f64) -> [f64; 4] {
     let (outer, inner) = if number.is_multiple_of(2) {
         (ratio, 1.0)
@@ -97,7 +97,7 @@ fn path_overshoots(stops: &[f64; 4]) -> bool {
     })
 }
 
-/// The Catmull–Rom spline of the textbooks, every segment as long in its parameter.
+/// The Catmull–Rom spline of textbooks, with the same parameter length for every segment.
 ///
 /// Catmull and Rom, "A class of local interpolating splines", Computer Aided Geometric Design, 1974.
 fn uniform_overshoots(stops: &[f64; 4]) -> bool {
@@ -112,17 +112,17 @@ fn uniform_overshoots(stops: &[f64; 4]) -> bool {
     })
 }
 
-/// Whether steps along a turn are uneven or have no direction.
+/// Returns whether the steps of a rotation are uneven, or one of its directions is invalid.
 fn is_uneven(looks: &[Option<DVec3>], angle: f64) -> bool {
     let mean = angle / f64::from(PLACES);
-    // Comparisons with what is no number are false: only what is shown to be right passes.
+    // Comparisons with NaN are false, so NaN counts as a failure.
     let is_right =
         |look: &Option<DVec3>| look.is_some_and(|look| (look.dot(look) - 1.0).abs() <= CROOKED);
     !looks.iter().all(is_right)
         || !looks.windows(2).all(|pair| match (pair[0], pair[1]) {
             (Some(a), Some(b)) => {
                 let step = 2.0 * (a - b).length().atan2((a + b).length());
-                // Directions are rounded to 6e-8 in single precision: that is no fault of the way.
+                // Rounding of directions in single precision, 6e-8, is not the method's fault.
                 step <= 2.0 * mean + 2.5e-7
             }
             _ => false,
@@ -160,7 +160,7 @@ fn path_loses_direction(yaw: f64, angle: f64) -> bool {
     cameras.iter().any(is_crooked) || is_uneven(&looks, angle) || !is_whole
 }
 
-/// The straight way from one unit vector to the other, made a unit vector again.
+/// Linear interpolation of two unit vectors, normalised.
 fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
     let (a, b) = (look(yaw), look(yaw + angle));
     let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));
@@ -171,7 +171,7 @@ fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
     is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
 }
 
-/// Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985, for directions.
+/// Spherical interpolation of directions, after Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 fn slerp_loses_direction(yaw: f64, angle: f64) -> bool {
     let (a, b) = (look(yaw), look(yaw + angle));
     let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));

@@ -1,4 +1,4 @@
-//! Maps of failure rates, and what they are measured over.
+//! Maps of failure rates, and the axes that they are measured over.
 
 use std::iter::Sum;
 
@@ -6,45 +6,45 @@ use glam::DVec3;
 
 use super::subject::MapSubject;
 
-/// Scales of a scene whose size is one.
+/// Scale factors for a scene of size one.
 const SCALES: [f64; 12] = [
     1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7,
 ];
-/// Distances of a scene from the origin, in sizes of it.
+/// Distances of a scene from the origin, relative to its size.
 const PLACES: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 
-/// Which way scenes are away from the origin: along no axis, at distance 1.
+/// The unit direction in which scenes are moved away from the origin; it is parallel to no axis.
 pub const AWAY: DVec3 = DVec3::new(0.6, -0.64, 0.48);
 
-/// What a map's axis is.
+/// An axis of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it measures.
+    /// What it measures, or its unit.
     pub name: &'static str,
-    /// Its marks.
+    /// The values that are measured.
     pub values: Vec<f64>,
 }
 
 impl Axis {
-    /// The one of this name, with these marks.
+    /// Creates an axis with these values.
     pub fn new(name: &'static str, values: &[f64]) -> Self {
         let values = values.to_vec();
         Self { name, values }
     }
 
-    /// That of maps over one axis: there is one of it.
+    /// The second axis of a map that has only one: a single value.
     pub fn one(name: &'static str) -> Self {
         let values = vec![1.0];
         Self { name, values }
     }
 }
 
-/// So many tries, and how many of them failed.
+/// A number of tries, and how many of them failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tries {
-    /// How many there were.
+    /// Number of tries.
     pub tries: u64,
-    /// How many failed.
+    /// Number of failures.
     pub failures: u64,
 }
 
@@ -58,13 +58,13 @@ impl Sum for Tries {
 }
 
 impl Tries {
-    /// Share that failed; NaN without a try.
+    /// Share of failures; NaN if there were no tries.
     pub fn rate(self) -> f64 {
         self.failures as f64 / self.tries as f64
     }
 
-    /// What the true rate is below with a certainty of 95 %: 3/n where nothing failed (the rule of
-    /// three), Wilson's bound elsewhere.
+    /// Upper bound on the true rate with a confidence of 95 %: 3/n if nothing failed (the rule of three), otherwise
+    /// Wilson's bound.
     ///
     /// Wilson, "Probable inference", JASA 22, 1927.
     pub fn bound(self) -> f64 {
@@ -92,25 +92,25 @@ impl Tries {
 /// The failure rate of one method over two axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// What is tried.
+    /// What is tested.
     pub subject: MapSubject,
-    /// The method's word.
+    /// The id or name of the method.
     pub method: String,
-    /// Whether it is the default.
+    /// Whether the method is the default.
     pub is_default: bool,
     /// What counts as a failure.
     pub failure: &'static str,
-    /// From left to right.
+    /// The axis from left to right.
     pub across: Axis,
-    /// From bottom to top.
+    /// The axis from bottom to top.
     pub up: Axis,
-    /// Row by row from the bottom.
+    /// One entry per pair of values, row by row from the bottom.
     pub cells: Vec<Tries>,
 }
 
 impl Map {
-    /// Tries a method in every cell: what is tested and what counts as its failure, the method and
-    /// whether it is the default, both axes, and the tries at a place on them.
+    /// Measures a method in every cell. The arguments are what is tested and what counts as a failure, the method and
+    /// whether it is the default, both axes, and the tries for a pair of their values.
     pub fn measure(
         (subject, failure): (MapSubject, &'static str),
         (method, is_default): (String, bool),
@@ -134,17 +134,17 @@ impl Map {
         }
     }
 
-    /// All tries together.
+    /// The sum of all tries.
     pub fn total(&self) -> Tries {
         self.cells.iter().copied().sum()
     }
 
-    /// The cell with the highest rate, and where it is.
+    /// The cell with the highest failure rate, with its values on both axes.
     pub fn worst(&self) -> Option<(f64, f64, Tries)> {
         let width = self.across.values.len();
         let index = (0..self.cells.len()).max_by(|&a, &b| {
             let rates = (self.cells[a].rate(), self.cells[b].rate());
-            // The first of equals has the mildest circumstances.
+            // Of equal rates, the first is under the mildest conditions.
             rates.0.total_cmp(&rates.1).then(b.cmp(&a))
         })?;
         Some((
@@ -163,14 +163,14 @@ pub fn places() -> Axis {
     Axis::new("sizes away", &PLACES)
 }
 
-/// Directions and shares without a pattern, the same every time.
+/// A pseudorandom number from 0 to below 1, the same every time for a number and a stream.
 pub fn scattered(number: u64, stream: u64) -> f64 {
     share(mixed(
         (number + 1).wrapping_mul(GOLDEN) ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03),
     ))
 }
 
-/// A direction that follows no pattern, and one across it; seldom `None`. They take the streams up to the sixth.
+/// A pseudorandom direction, and one perpendicular to it; rarely `None`. Uses streams 0 to 5.
 pub fn normal_and_aside(number: u64) -> Option<(DVec3, DVec3)> {
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
     let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
@@ -178,10 +178,10 @@ pub fn normal_and_aside(number: u64) -> Option<(DVec3, DVec3)> {
     Some((normal, normal.cross(other).try_normalize()?))
 }
 
-/// What is added to a state from one random number to the next: 2⁶⁴ over the golden ratio.
+/// Increment of the generator's state between two random numbers: 2⁶⁴ divided by the golden ratio.
 pub const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Bits without a pattern, from any others.
+/// Mixes any bits into pseudorandom ones.
 ///
 /// Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
 pub fn mixed(mut bits: u64) -> u64 {
@@ -190,7 +190,7 @@ pub fn mixed(mut bits: u64) -> u64 {
     bits ^ (bits >> 31)
 }
 
-/// A number from 0 to below 1, of bits without a pattern.
+/// A number from 0 to below 1, from pseudorandom bits.
 pub fn share(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1_u64 << 53) as f64
 }

@@ -1,5 +1,5 @@
-//! Where formulas break: the rate at which each method fails, over the scale of a scene, its
-//! distance from the origin, and whatever else it is sensitive to.
+//! Measures where formulas fail: the failure rate of each method, depending on the scale of a scene, its distance
+//! from the origin, and whatever else the method is sensitive to.
 
 mod subject;
 
@@ -45,7 +45,7 @@ use serde::Serialize;
 
 use super::table::csv_of;
 
-/// All maps in single precision, `effort` times as many tries as for a first look.
+/// Measures all maps in single precision, with `effort` times the tries of a first look.
 pub fn maps(effort: u32) -> Vec<Map> {
     let mut maps = sphere::maps(effort);
     maps.extend(triangle::maps(effort));
@@ -63,7 +63,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps
 }
 
-/// One line for each method: how often it fails, and where most.
+/// One line per method: how often it fails, and where it fails most.
 pub fn summary(maps: &[Map]) -> String {
     let mut text = format!(
         "  {:<21} {:<28} {:>10} {:>11} {:>11}  {}\n",
@@ -95,7 +95,7 @@ pub fn summary(maps: &[Map]) -> String {
     text
 }
 
-/// A line of the file.
+/// A line of the CSV file.
 #[derive(Serialize)]
 struct CellRow<'a> {
     subject: &'static str,
@@ -158,19 +158,19 @@ mod tests {
         assert!((0..10_000).all(|n| (0.0..1.0).contains(&scattered(n, 1))));
     }
 
-    /// Methods that are no default and yet fail nowhere in these maps: rebasing takes the distance
-    /// from the origin away, and with it what they would fail at.
+    /// Methods that are not the default, yet never fail in these maps: rebasing removes the distance from the origin,
+    /// which they would fail at.
     const FLAWLESS: [(&str, &str); 9] = [
         ("shadow acne", "relative:0.0001"),
         ("shadow leak", "relative:0.0001"),
         ("mesh acne", "relative:0.0001"),
         ("mesh leak", "relative:0.0001"),
-        // Without it, too little light gets through, and not too much.
+        // Not rebased, these let too little light through, not too much.
         ("shadow leak", "robust (not rebased)"),
         ("shadow leak", "relative:0.0001 (not rebased)"),
         ("mesh leak", "robust (not rebased)"),
         ("mesh leak", "relative:0.0001 (not rebased)"),
-        // Right everywhere, and slower than what is chosen for small exponents.
+        // Correct everywhere, but slower than the method that is chosen for small exponents.
         ("highlight", "log1p"),
     ];
 
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    /// Nothing fails, but where it is known that some tries may.
+    /// Asserts that nothing fails, except where some failures are known.
     fn assert_holds(map: &Map) {
         for (index, cell) in map.cells.iter().enumerate() {
             let at = map.across.values[index % map.across.values.len()];
@@ -200,7 +200,7 @@ mod tests {
                 // At a million radii the sphere formula fails for about one ray in a million; the plan does not
                 // use single precision beyond 5,000.
                 MapSubject::Sphere if at > 1e5 => 1e-4,
-                // Samples in a pixel that is halved as often as can be are a sixteenth of it apart.
+                // In a pixel that is subdivided as finely as possible, samples are a sixteenth of it apart.
                 MapSubject::Thin if at < 0.2 => 0.25,
                 _ => 0.0,
             };
@@ -212,7 +212,7 @@ mod tests {
         }
     }
 
-    /// The rate of a method where something is known about it.
+    /// The failure rate of a method in the cell at these values.
     fn rate(maps: &[Map], subject: &str, method: &str, x: f64, y: f64) -> f64 {
         let map = maps
             .iter()

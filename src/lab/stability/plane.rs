@@ -1,4 +1,4 @@
-//! Rays that meet a plane at grazing angles.
+//! Rays that hit a plane at grazing angles.
 
 use super::map::{Axis, Map, Tries, normal_and_aside, scales, scattered};
 use super::subject::MapSubject;
@@ -8,11 +8,11 @@ use crate::simd::{Real as _, Vec3};
 
 /// Angles between ray and plane, in degrees.
 const ANGLES: [f64; 6] = [45.0, 10.0, 1.0, 0.1, 0.01, 0.001];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 200;
 
-/// The one formula: off by more than twice what the rounding of the ray must cost, which is 8u / sin(angle): the ray and
-/// the plane that are asked for are rounded as well.
+/// The map of the only formula. A failure is an error of the distance of more than 16u / sin(angle): twice the 8u /
+/// sin(angle) that rounding must cost. The true distance is that of the rounded ray and plane.
 pub fn map(effort: u32) -> Map {
     let across = Axis::new("degrees", &ANGLES);
     Map::measure(
@@ -49,7 +49,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
         ray.direction.to_dvec3(),
     );
     let truth = (f64::from(plane.offset) - n.dot(o)) / n.dot(d);
-    // A ray that its own rounding has turned away from the plane was never to meet it.
+    // A ray that rounding has turned away from the plane is not expected to hit it.
     (truth > 0.0).then(|| {
         let allowed = 16.0 * f64::from(f32::UNIT_ROUNDOFF) / sine;
         (found - truth).abs() > allowed * truth.abs()

@@ -1,5 +1,5 @@
-//! Pictures in single precision: pixels of which rounding decides what is seen, at the edges of things, in their
-//! shadows and, more and more, in mirrors that are seen in mirrors.
+//! Pictures in single precision: counts pixels in which rounding decides what is visible, at edges, in shadows, and
+//! increasingly in mirrors that are seen in mirrors.
 
 use glam::DVec3;
 
@@ -17,10 +17,10 @@ use crate::scene::{
 const SIDE: u32 = 128;
 /// Solids along each side of the floor.
 const ROW: usize = 5;
-/// How much a channel may differ: a step of 8 bits.
+/// Allowed difference of a channel: one level of 8 bits.
 const STEP: f32 = 1.0 / 255.0;
 
-/// Plain single precision, and what the plan does with it.
+/// One map for plain single precision, and one for the plan's way of using it.
 pub fn maps() -> Vec<Map> {
     let map = |precision: Precision| {
         Map::measure(
@@ -53,15 +53,15 @@ fn distances() -> Axis {
     Axis::new("sizes away", &[3.0, 30.0, 300.0, 3000.0])
 }
 
-/// As 8 bits show them: what is brighter than white is white.
+/// Compares colours as 8 bits show them: anything brighter than white is white.
 fn differ(one: [f32; 3], other: [f32; 3]) -> bool {
     let channels = one.into_iter().zip(other);
     let mut gaps = channels.map(|(one, other)| (one.min(1.0) - other.min(1.0)).abs());
     gaps.any(|gap| gap > STEP)
 }
 
-/// Mirrors, flat and round, that see each other over a floor, seen from so many sizes away through a lens that keeps
-/// them as large.
+/// Flat and round mirrors over a floor that reflect each other, seen from `away` sizes through a lens that keeps them
+/// equally large.
 fn scene(bounces: u32, away: f64) -> Scene {
     let mut scene = Scene::empty();
     let pack = ColorPack {
@@ -92,7 +92,7 @@ fn scene(bounces: u32, away: f64) -> Scene {
         let along = |number: usize| (number as f64 / (ROW - 1) as f64 - 0.5) * 2.3;
         let at = DVec3::new(along(place % ROW), 0.29, along(place / ROW));
         let name = format!("Solid {place}");
-        // A ball, or a solid at an angle of its own.
+        // A ball, or a solid with its own rotation.
         let shape: Shape = match SOLIDS.get(place % (SOLIDS.len() + 1)) {
             None => Sphere {
                 center: at,

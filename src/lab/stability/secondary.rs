@@ -1,5 +1,5 @@
-//! Shadow rays that hit the surface that they start on, or miss what stands close to it: pictures of
-//! a ball and a card on a floor, at every scale and place; the ball a sphere, or a mesh.
+//! Shadow rays that hit the surface that they start on, or miss what is close to it: pictures of a ball and a card on
+//! a floor, at every scale and place. The ball is a sphere or a mesh.
 
 use super::map::{AWAY, Map, Tries, places, scales};
 use super::stage::light;
@@ -13,10 +13,10 @@ use glam::DVec3;
 
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
-/// Below this, a lit pixel counts as dark: its light comes in along the surface.
+/// Brightness below which a lit pixel counts as dark: its light is almost parallel to the surface.
 const GRAZING: f32 = 0.03;
 
-/// Farther than anything is: rays that start there meet nothing.
+/// An offset larger than the scene: rays that start there hit nothing.
 const BEYOND: f64 = 1e6;
 
 /// What the ball is made of.
@@ -26,8 +26,8 @@ enum BallKind {
     Mesh,
 }
 
-/// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are
-/// lit (leak). Pixels beside an edge of a shadow or of a thing are not tried.
+/// Two maps for each way and ball: lit points that are dark (acne), and points in shadow that are lit (leak). Pixels
+/// at the edge of a shadow or of an object are not tried.
 pub fn maps() -> Vec<Map> {
     let mut maps = maps_of(
         BallKind::Sphere,
@@ -75,7 +75,7 @@ fn maps_of(ball: BallKind, [acne, leak]: [MapSubject; 2]) -> Vec<Map> {
     acne.chain(leak).collect()
 }
 
-/// How rays leave a surface, in which coordinates.
+/// How rays are moved off a surface, and in which coordinates.
 struct Way {
     name: String,
     offset: RayOffset,
@@ -88,7 +88,7 @@ impl Way {
     }
 }
 
-/// Every method, and those that depend on the place without the rebasing that spares them that.
+/// Every method, and those that depend on the place also without rebasing, which removes that dependence.
 fn ways() -> Vec<Way> {
     let way = |offset: RayOffset, model| Way {
         name: match model {
@@ -106,7 +106,7 @@ fn ways() -> Vec<Way> {
         .collect()
 }
 
-/// Which pixels are lit.
+/// Returns for each pixel whether it is lit.
 fn lit(scene: &Scene, (offset, precision): (RayOffset, Precision), model: Model) -> Vec<bool> {
     let request = RenderRequest {
         methods: Methods {
@@ -122,7 +122,7 @@ fn lit(scene: &Scene, (offset, precision): (RayOffset, Precision), model: Model)
     light.iter().map(|pixel| pixel[0] > GRAZING).collect()
 }
 
-/// Whether the pixels around are as lit as this one.
+/// Returns whether all pixels around this one are lit or dark like it.
 fn is_inner(lit: &[bool], index: usize) -> bool {
     let side = SIDE as usize;
     let (x, y) = (index % side, index / side);
@@ -134,7 +134,7 @@ fn is_inner(lit: &[bool], index: usize) -> bool {
         .all(|row| (row - 1..=row + 1).all(|near| lit[near] == lit[index]))
 }
 
-/// A floor, a ball on it, a thin card beside it, and one light; so large, so many sizes away.
+/// A floor, a ball on it, a thin card beside it, and one light; scaled by `scale`, and `away` sizes from the origin.
 fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
     let point = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) + AWAY * away) * scale;
     let mut scene = Scene::empty();

@@ -1,4 +1,4 @@
-//! Rays past spheres far away.
+//! Rays that hit or pass distant spheres.
 
 use glam::DVec3;
 
@@ -8,13 +8,13 @@ use crate::primitive::{PackedSphere, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, SphereMethod};
 use crate::simd::Vec3;
 
-/// Distances in radii; beyond, the ray's own numbers are too coarse for the sphere.
+/// Distances in radii. For larger ones, a ray's own coordinates are too coarse for the sphere.
 const DISTANCES: [f64; 7] = [3.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 400;
 
-/// One map for each method: hits where the ray passes by, misses where it does not. Rays within a
-/// tenth of a radius of the edge are not tried.
+/// One map per method. A failure is a hit by a ray that passes the sphere, or a miss by one that does not. Rays
+/// within a tenth of a radius of the silhouette are not tried.
 pub fn maps(effort: u32) -> Vec<Map> {
     let methods = SphereMethod::ALL.iter();
     methods

@@ -1,4 +1,4 @@
-//! The light of small pictures that maps are tried on.
+//! Traces the small pictures that some maps are measured on.
 
 use super::super::measure::trace_light;
 use crate::image::LinearRgb;
@@ -9,6 +9,6 @@ use crate::trace::{RenderControl, Tracer};
 /// The light of a picture, row by row from the top.
 pub fn light(scene: &Scene, request: &RenderRequest) -> Vec<LinearRgb> {
     let traced = trace_light(&Tracer::new(scene, request), &RenderControl::default());
-    // Nobody stops it.
+    // Nothing stops it.
     traced.map_or(Vec::new(), |(light, _)| light)
 }

@@ -1,53 +1,53 @@
-//! What the maps are about.
+//! Subjects of the maps.
 
 use glam::DVec3;
 
 use crate::animate::motion_between;
 use crate::scene::{Method as _, Orientation, Render, Scene, Shape};
 
-/// What a map is about: the setting that it tests, and where on it a scene stands.
+/// The subject of a map, which determines the setting that it tests and the position of a scene on its axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapSubject {
-    /// Rays past spheres.
+    /// Rays that hit or pass spheres.
     Sphere,
     /// Rays at the edges of triangles.
     Triangle,
-    /// Lit points of single shapes.
+    /// Lit points of single shapes that are taken for shadowed.
     ShadowAcne,
-    /// Points in the shadow of single shapes.
+    /// Shadowed points of single shapes that are taken for lit.
     ShadowLeak,
-    /// Lit points of meshes.
+    /// Lit points of meshes that are taken for shadowed.
     MeshAcne,
-    /// Points in the shadow of meshes.
+    /// Shadowed points of meshes that are taken for lit.
     MeshLeak,
-    /// Surfaces in one place.
+    /// Coincident surfaces.
     Coincident,
-    /// What rounding decides in pictures.
+    /// Pixels that rounding decides.
     Rounding,
-    /// Where light ends on meshes that are shaded as if they were curved.
+    /// The terminator on smoothly shaded meshes.
     Terminator,
-    /// Things that are thinner than a pixel.
+    /// Things thinner than a pixel.
     Thin,
     /// Phong highlights.
     Highlight,
     /// Rays that graze planes.
     Plane,
-    /// Rays at the rims of discs.
+    /// Rays close to the rims of discs.
     Disc,
     /// Cameras that look nearly straight up.
     CameraPole,
-    /// Cameras that have turned for long.
+    /// Cameras after many turns.
     CameraTurns,
-    /// Paths through uneven keys.
+    /// Paths through unevenly spaced keys.
     Path,
-    /// Turns between keys.
+    /// Rotations between keys.
     Turn,
-    /// What tells the frames of an export apart.
+    /// Fingerprints of exported frames.
     Fingerprint,
 }
 
 impl MapSubject {
-    /// What it is called.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
@@ -71,7 +71,7 @@ impl MapSubject {
         }
     }
 
-    /// Whether it is tried in single precision alone.
+    /// Returns whether it is tested in single precision only.
     pub fn is_of_single_precision(self) -> bool {
         matches!(
             self,
@@ -79,7 +79,7 @@ impl MapSubject {
         )
     }
 
-    /// The id of the method that a scene asks for; `None` where there is no choice.
+    /// The id of the method that the settings choose; `None` if there is no choice.
     pub fn method_in_use(self, render: &Render) -> Option<String> {
         match self {
             Self::Sphere => Some(render.sphere.id()),
@@ -94,7 +94,7 @@ impl MapSubject {
         }
     }
 
-    /// Where a scene stands on the axes of the map, as far as that can be said.
+    /// The position of a scene on the axes of the map; `None` if there is none.
     pub fn standing(self, scene: &Scene) -> Option<(f64, f64)> {
         match self {
             Self::Sphere | Self::Disc => self.farthest(scene),
@@ -135,7 +135,7 @@ impl MapSubject {
         }
     }
 
-    /// Distance in radii, and radius, of the round shape that is farthest from the eye.
+    /// Distance in radii, and radius, of the sphere or disc that is farthest from the eye relative to its radius.
     fn farthest(self, scene: &Scene) -> Option<(f64, f64)> {
         let eye = scene.camera.position;
         let round = scene.objects.iter().filter_map(|object| {
@@ -150,7 +150,7 @@ impl MapSubject {
     }
 }
 
-/// Middle of what is seen and ends, and half the diagonal of its box.
+/// Centre and half diagonal of the bounding box of everything visible and finite.
 fn middle_and_size(scene: &Scene) -> Option<(DVec3, f64)> {
     let (low, high) = scene.bounds()?;
     Some(((low + high) * 0.5, (high - low).length() / 2.0))

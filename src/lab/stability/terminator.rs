@@ -1,5 +1,5 @@
-//! Where light ends on faces that are shaded as one curved surface: points of a ball of triangles that the
-//! light reaches on the ball, and that its own flat faces put into shadow.
+//! The terminator on smoothly shaded faces: points on a ball of triangles that are lit on the curved surface, but
+//! shadowed by the ball's own flat faces.
 
 use std::sync::Arc;
 
@@ -13,16 +13,16 @@ use crate::primitive::{Curved, PackedTriangle, Primitive as _, Ray, SurfacePoint
 use crate::scene::{Mesh, Methods};
 use crate::simd::Vec3;
 
-/// How often the faces of an octahedron are split in four.
+/// How often each face of an octahedron is split into four.
 const SPLITS: [u32; 4] = [1, 2, 3, 4];
-/// How high the light stands over the curved surface, in degrees.
+/// Elevation of the light above the curved surface, in degrees.
 const HEIGHTS: [f64; 5] = [1.0, 3.0, 10.0, 20.0, 40.0];
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 150;
-/// What a coordinate of the ball may be off by.
+/// Rounding error of a coordinate on the ball.
 const SLACK: f32 = 1e-6;
 
-/// One map for each place where shadow rays can start: on the curved surface, or on the flat face.
+/// One map for each point where shadow rays can start: on the curved surface, or on the flat face.
 pub fn maps(effort: u32) -> Vec<Map> {
     let balls = SPLITS.map(ball);
     let map = |method: &str, is_lifted| {
@@ -51,7 +51,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     vec![map("lifted", true), map("flat", false)]
 }
 
-/// A ball of radius 1, shaded as one.
+/// A ball of radius 1, shaded as one surface.
 fn ball(splits: u32) -> Arc<PackedMesh<f32>> {
     let mut points = vec![
         DVec3::X,
@@ -132,7 +132,7 @@ fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> O
     Some(met.any(f32::is_finite))
 }
 
-/// A point of a triangle: two shares from 0 to 1 cover it evenly.
+/// A point of a triangle: uniform if the two shares are uniform from 0 to 1.
 fn place_on(face: &PackedTriangle<f32>, first: f64, second: f64) -> Vec3<f32> {
     let (first, second) = if first + second > 1.0 {
         (1.0 - first, 1.0 - second)

@@ -1,4 +1,4 @@
-//! Things that are thinner than a pixel: bright ribbons across a dark picture, and which pixels show nothing of them.
+//! Things thinner than a pixel: counts the pixels that miss bright ribbons in a dark picture.
 
 use std::f64::consts::PI;
 
@@ -14,9 +14,9 @@ use crate::scene::{Camera, ColorPack, List, Method as _, Object, Sampling, Scene
 const SIDE: u32 = 24;
 /// Widths of the ribbons, in pixels.
 const WIDTHS: [f64; 6] = [0.04, 0.1, 0.25, 0.5, 1.0, 2.0];
-/// How far away they are.
+/// Distances of the ribbons from the camera.
 const DISTANCES: [f64; 5] = [1.0, 10.0, 100.0, 1e3, 1e4];
-/// What is held against the usual sampling.
+/// The default sampling, and those that it is compared with.
 const SAMPLINGS: [Sampling; 4] = [
     Sampling::ADAPTIVE,
     Sampling::Adaptive {
@@ -26,16 +26,16 @@ const SAMPLINGS: [Sampling; 4] = [
     Sampling::Grid(4),
     Sampling::Centres,
 ];
-/// Samples along each side of a pixel that tell what it should show.
+/// The sampling that tells what a pixel should show.
 const TRUTH: Sampling = Sampling::Grid(48);
-/// What a pixel must show to be tried: this much can be seen.
+/// Least brightness of a pixel that is tried: enough to be visible.
 const SEEN: f32 = 8.0 / 255.0;
-/// A pixel below this shows nothing.
+/// Brightness below which a pixel shows nothing.
 const NOTHING: f32 = 0.5 / 255.0;
-/// Ribbons in each cell for a first look.
+/// Ribbons per cell for a first look.
 const TRIES: u64 = 4;
 
-/// One map for each sampling.
+/// One map per sampling.
 pub fn maps(effort: u32) -> Vec<Map> {
     let mut maps: Vec<Map> = SAMPLINGS
         .iter()
@@ -61,11 +61,11 @@ pub fn maps(effort: u32) -> Vec<Map> {
     maps
 }
 
-/// For each sampling, the pixels that should show something, and those of them that show nothing; ribbons are
-/// counted from the first.
+/// For each sampling, counts the pixels that should show a ribbon, and as failures those that show nothing. `first`
+/// is the number of the first ribbon.
 fn missed((first, effort): (u64, u32), width: f64, distance: f64) -> [Tries; SAMPLINGS.len()] {
     let mut sums = [Tries::default(); SAMPLINGS.len()];
-    // Each takes a picture of a million rays.
+    // Each ribbon takes a picture of a million rays, so their number grows with the square root of the effort only.
     for number in first..first + TRIES * u64::from(effort.isqrt()) {
         let scene = ribbon(number, width, distance);
         let truth = brightness(&scene, TRUTH);
@@ -90,7 +90,7 @@ fn brightness(scene: &Scene, sampling: Sampling) -> Vec<f32> {
         .collect()
 }
 
-/// A ribbon that ends inside the picture, somewhere, in some direction: two triangles.
+/// A ribbon at a random place and in a random direction, which ends inside the picture: two triangles.
 fn ribbon(number: u64, width: f64, distance: f64) -> Scene {
     let random = |stream| scattered(number, stream);
     let pixel = distance / f64::from(SIDE);

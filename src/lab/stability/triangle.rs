@@ -1,4 +1,4 @@
-//! Rays from inside a closed mesh, aimed at its edges and corners: each must hit something.
+//! Rays from inside a closed mesh that aim at its edges and corners: each must hit something.
 
 use glam::DVec3;
 
@@ -8,12 +8,12 @@ use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Tip};
 use crate::scene::{Method as _, Methods, TriangleMethod};
 use crate::simd::Vec3;
 
-/// Tries in each cell for a first look.
+/// Tries per cell for a first look.
 const TRIES: u64 = 300;
-/// A place inside, off the middle.
+/// A point inside the mesh, but not its centre.
 const INSIDE: DVec3 = DVec3::new(0.11, -0.07, 0.05);
 
-/// One map for each method.
+/// One map per method.
 pub fn maps(effort: u32) -> Vec<Map> {
     let ball = ball();
     let methods = TriangleMethod::ALL.iter();
@@ -42,7 +42,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
         .collect()
 }
 
-/// Whether the ray leaks; `None` for a target that has no direction.
+/// Returns whether the ray leaks out of the mesh; `None` if the target gives no direction.
 fn leaks(
     method: TriangleMethod,
     mesh: &[PackedTriangle<f32>],
@@ -50,7 +50,7 @@ fn leaks(
     number: u64,
 ) -> Option<bool> {
     let [a, b, _] = mesh[number as usize % mesh.len()].corners;
-    // Every other ray aims at a corner, the rest at places along edges.
+    // Half of the rays aim at a corner, the rest at points on edges.
     let along = if number.is_multiple_of(2) {
         0.0
     } else {
@@ -85,14 +85,14 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
     }
 }
 
-/// An octahedron whose faces are split twice and moved onto the ball around them.
+/// An octahedron whose faces are split twice and projected onto the sphere around them.
 pub(super) fn ball() -> Vec<[DVec3; 3]> {
     let onto = |v: DVec3| v * (1.0 / v.length());
     let mut faces = Vec::new();
     for x in [-1.0, 1.0] {
         for y in [-1.0, 1.0] {
             for z in [-1.0, 1.0] {
-                // Turned, so that no edge lies along an axis.
+                // Rotated, so that no edge is parallel to an axis.
                 let turn = |v: DVec3| {
                     let (x, y) = (0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y);
                     DVec3::new(x, y * 0.96 - v.z * 0.28, y * 0.28 + v.z * 0.96)

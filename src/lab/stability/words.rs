@@ -1,13 +1,13 @@
-//! What a map says, in a sentence.
+//! Summarises a map in a sentence.
 
 use super::map::{Axis, Map, Tries};
 use crate::words::short_number;
 
-/// Axes that are named before their numbers.
+/// Axes whose name is put before the number; it follows the number for all others.
 const NAMES: [&str; 3] = ["scale", "exponent", "longest to shortest segment"];
 
 impl Map {
-    /// Where it fails, and how often there.
+    /// Describes where the method fails, and how often there.
     pub fn sentence(&self) -> String {
         let total = self.total();
         if total.failures == 0 {
@@ -23,7 +23,7 @@ impl Map {
         }
     }
 
-    /// The tries at each mark of one axis, all marks of the other together.
+    /// The tries at each value of one axis, summed over all values of the other.
     fn along(&self, mark: impl Fn(usize, usize) -> usize, count: usize) -> Vec<Tries> {
         let width = self.across.values.len();
         let mut sums = vec![Tries::default(); count];
@@ -35,15 +35,15 @@ impl Map {
     }
 }
 
-/// The end of an axis where everything fails that does, in words, with the tries there; `None` if that is all
-/// of the axis.
+/// The part of an axis that contains all failures, in words, with its tries; `None` if that is the whole axis, or if
+/// there are none.
 fn part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
     let fails = |at: &usize| sums[*at].failures > 0;
     let first = (0..sums.len()).find(fails)?;
     let last = (0..sums.len()).rev().find(fails)?;
     let at = |mark: usize| {
         let (name, value) = (axis.name, number(axis.values[mark]));
-        // Numbers have names, and measures have numbers.
+        // `scale 0.1`, but `10 radii`.
         if NAMES.contains(&name) {
             format!("{name} {value}")
         } else {
@@ -60,7 +60,7 @@ fn part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
     Some((words, sums[first..=last].iter().copied().sum()))
 }
 
-/// A number as on an axis.
+/// A number as it is shown on an axis.
 pub fn number(value: f64) -> String {
     if value == 0.0 || (1e-2..1e3).contains(&value) {
         format!("{value}")
@@ -78,7 +78,7 @@ fn percent(rate: f64) -> String {
     }
 }
 
-/// Thousands apart.
+/// A number with its thousands separated.
 fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! Files that are not what they say are refused with a sentence, before they cost memory.
+//! Files that are not what they claim are refused with a message, before they use up memory.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn files_that_are_not_there_or_not_meshes() {
 #[test]
 fn files_that_are_too_large_are_not_read() {
     let sample = Sample::new("m.stl", "");
-    // A hole takes no place on the disk.
+    // A sparse file takes no space on disk.
     let file = std::fs::File::create(&sample.path).expect("a file");
     file.set_len((2 << 30) + 1).expect("a long file");
     assert_eq!(

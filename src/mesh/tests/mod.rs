@@ -1,4 +1,4 @@
-//! Real files in every format, good and broken.
+//! Tests with real files of every format, good and broken.
 
 mod broken;
 mod mutated;
@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 use super::*;
 
-/// A file in a folder of its own, which goes when it does.
+/// A file in a temporary folder of its own, which is deleted with it.
 struct Sample {
     folder: TempDir,
     path: PathBuf,
@@ -28,7 +28,7 @@ impl Sample {
         sample
     }
 
-    /// Another file in the same folder.
+    /// Writes another file into the same folder.
     fn beside(&self, name: &str, bytes: impl AsRef<[u8]>) {
         std::fs::write(self.folder.path().join(name), bytes).expect("written");
     }
@@ -45,7 +45,7 @@ impl Sample {
         read_triangles(&self.path).expect("a mesh")
     }
 
-    /// The error, with the file's name only in place of its path.
+    /// The error message, with the file name instead of the whole path.
     fn error(&self) -> String {
         let error = read_mesh_file(&self.path)
             .expect_err("an error")
@@ -56,7 +56,7 @@ impl Sample {
     }
 }
 
-/// What a file of this name and content is refused with.
+/// The error message for a file with this name and content.
 fn error_of(name: &str, bytes: impl AsRef<[u8]>) -> String {
     Sample::new(name, bytes).error()
 }

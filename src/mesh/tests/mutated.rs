@@ -1,11 +1,11 @@
-//! Good files with random damage: they are read or refused, and nothing panics.
+//! Good files with random damage: each is read or refused without a panic.
 
 use proptest::prelude::*;
 
 use super::solid::all;
 use super::{Sample, read_triangles};
 
-/// Texts that break more than random bytes do.
+/// Strings that are more likely to break a file than random bytes.
 const WORDS: [&str; 12] = [
     "nan",
     "-1",
@@ -63,7 +63,7 @@ fn apply(bytes: &mut Vec<u8>, damage: &Damage) {
     }
 }
 
-/// How many files are broken: set `PROPTEST_CASES` for more.
+/// Eight times the usual number of cases; set `PROPTEST_CASES` for more.
 fn config() -> ProptestConfig {
     let config = ProptestConfig::default();
     ProptestConfig {

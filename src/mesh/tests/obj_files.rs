@@ -1,4 +1,4 @@
-//! OBJ as programs write it, with MTL.
+//! OBJ files as other programs write them, with MTL.
 
 use glam::DVec3;
 
@@ -41,7 +41,7 @@ fn groups_are_parts_with_colors() {
         all.points(),
         [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y]
     );
-    // The first triangle is in the other parts too.
+    // The first triangle occurs in the other parts too.
     assert_eq!(all.faces(), [[0, 2, 1], [0, 3, 2]]);
 }
 
@@ -50,11 +50,11 @@ fn what_programs_write_is_read() {
     let expected = Sample::new("m.obj", format!("{SQUARE}f 1 2 3 4")).triangles();
     assert_eq!(expected.faces().len(), 2);
     for text in [
-        // Colours at some points only, weights, Windows, a byte order mark, no last line break.
+        // Colours at some points only, weights, Windows line ends, a byte order mark, no final line break.
         "\u{feff}v 0 0 0 1 1 1\r\nv 1 0 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4",
         "vt 0 0\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1/1 2//1 3/1 4",
         "  v 0 0 0\n\tv 1 0 0\nv 1 1 \\\n 0\nv 0 1 0\nf 1 2\\\n3 4\n",
-        // Numbers of texture coordinates are nobody's business.
+        // Indices of texture coordinates are ignored, even invalid ones.
         "vt 0 0\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/-9223372036854775808 2/99 3/0 4",
     ] {
         assert_eq!(Sample::new("m.obj", text).triangles(), expected, "{text}");
@@ -197,7 +197,7 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     sample.beside("some.mtl", "newmtl red\nKd 1 0 0\n");
     let unknown = "no material file of it has Material #25, which it names";
     assert_eq!(sample.notes(), [unknown]);
-    // What leads out of the folder is not followed, whatever its capitals.
+    // A link that leads out of the folder is not followed, whatever the case of its name.
     #[cfg(unix)]
     {
         let outside = Sample::new("some.mtl", "newmtl red\nKd 0 1 0\n");
@@ -228,13 +228,13 @@ fn lines_end_as_on_old_machines_and_remarks_as_they_like() {
         let colors = parts[0].colors.as_ref().expect("a colour");
         assert_eq!(colors.diffuse, [1.0, 0.0, 0.0]);
     }
-    // Where a line is wrong is told behind a remark, too.
+    // Line numbers are right after comments, too.
     let sample = Sample::new("m.obj", "g a\\\n# b\\\nf 1 2 9\n");
     let said = sample.error();
     assert!(said.contains(":3:") || said.contains("line 3"), "{said}");
 }
 
-/// The colours of the parts of an OBJ file with this text and this material file beside it.
+/// The colours of the parts of an OBJ file with this text, and with this material file in its folder.
 fn colors(obj: &str, mtl: impl AsRef<[u8]>) -> Vec<PartColors> {
     let sample = Sample::new("m.obj", obj);
     sample.beside("m.mtl", mtl);

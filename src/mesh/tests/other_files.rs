@@ -1,4 +1,4 @@
-//! What is particular about STL, PLY and glTF files.
+//! Peculiarities of STL, PLY and glTF files.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::solid::{binary_stl, embedded_gltf, text_stl};
 use super::{Sample, marks_of_mesh};
 
-/// Who writes a file in one go does not know how many there are, and leaves the room for the number as it is.
+/// Programs that write in one pass do not know the number of triangles in advance, and leave a placeholder.
 #[test]
 fn stl_files_without_a_number_are_as_long_as_they_are() {
     let expected = Sample::new("m.stl", binary_stl()).triangles();
@@ -35,7 +35,7 @@ fn stl_texts_differ() {
         let triangles = Sample::new("m.stl", &text).triangles();
         assert!(triangles == expected, "{text}");
     }
-    // Of a triangle without an area, some programs write no normal that is a number.
+    // For a triangle without area, some programs write a normal that is not a number.
     let normal = text_stl()
         .lines()
         .find(|line| line.contains("normal"))
@@ -51,18 +51,18 @@ fn stl_texts_differ() {
             "{none}"
         );
     }
-    // Two solids are one part with the name of the first.
+    // Two solids become one part with the name of the first.
     let other = "solid b\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid b\n";
     let parts = Sample::new("m.stl", text_stl() + other).parts();
     assert_eq!(parts.len(), 1);
     assert_eq!(parts[0].triangles.faces().len(), 21);
     let unnamed = text_stl().replace(" ico sahedron", "") + &other.replace(" b\n", "\n");
     assert_eq!(Sample::new("m.stl", unnamed).triangles().faces().len(), 21);
-    // Some programs write more behind the triangles.
+    // Some programs append data after the triangles.
     let longer = [binary_stl(), b"behind".to_vec()].concat();
     let header: Vec<u8> = [vec![0; 80], longer[80..].to_vec()].concat();
     assert_eq!(Sample::new("m.stl", header.clone()).triangles(), expected);
-    // Where it may be a triangle, that is said.
+    // If the data is long enough for a triangle, there is a note.
     let notes = |more: usize| {
         let bytes = [header.clone(), vec![0; more]].concat();
         Sample::new("m.stl", bytes).notes().concat()
@@ -111,7 +111,7 @@ fn ply_strips_are_triangles() {
     let header = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
     let points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
     let mesh = Sample::new("m.ply", format!("{header}{points}8 0 1 2 3 -1 2 3 4\n")).triangles();
-    // The second of a strip is turned over, so that all look the same way: clockwise, as a mesh keeps them.
+    // The second triangle of a strip is turned over, so that all have the same orientation: clockwise, as in a mesh.
     assert_eq!(mesh.faces(), [[0, 2, 1], [2, 3, 1], [2, 4, 3]]);
     let error = Sample::new("m.ply", format!("{header}{points}4 0 1 2 9\n")).error();
     assert!(error.contains('9'), "{error}");
@@ -122,7 +122,7 @@ fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
     let json = embedded_gltf("");
     let expected = Sample::new("m.gltf", &json).triangles();
     let with = |more: &str| json.replacen('{', &format!("{{{more},"), 1);
-    // A picture in a format of an extension, and what turns a texture.
+    // An image in a format of an extension, and an animation of a texture.
     let texture = with(r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}]"#);
     let pointer = with(
         r#""animations":[{"channels":[{"sampler":0,"target":{"path":"pointer"}}],"samplers":[]}]"#,
@@ -184,7 +184,7 @@ fn what_gltf_and_mtl_files_show_otherwise_is_told() {
 
 #[test]
 fn strips_and_fans_of_gltf_are_triangles() {
-    // The first corners are a strip and a fan as well as triangles.
+    // The first corners also form a valid strip and a valid fan.
     let count = |mode: &str, count: &str| {
         let json = embedded_gltf("")
             .replace(r#""indices":1"#, &format!(r#""indices":1,"mode":{mode}"#))
@@ -261,8 +261,8 @@ fn what_is_left_out_of_a_file_is_told() {
     assert_eq!(notes, ["colours of points or faces are left out"]);
 }
 
-/// The corners of a glTF triangle: of these bytes, with these accessors and views (the positions first), extensions and
-/// nodes, of which the first shows it.
+/// The sorted corners of a triangle in a glTF file with these bytes as its buffer and these accessors (positions
+/// first), views, attributes and further members; the first node shows it.
 fn corners(
     bytes: &[u8],
     accessors: &str,
@@ -324,7 +324,7 @@ fn positions_may_be_quantized_or_replaced_one_by_one() {
         ALONE,
     );
     assert_eq!(replaced, [DVec3::ZERO, DVec3::new(0.0, 5.0, 7.0), DVec3::X]);
-    // Of nothing but what is replaced.
+    // All points are zeros except those that are replaced.
     let bytes = [vec![1, 2, 0, 0], bytes_of(&[0.0, 5.0, 7.0, 1.0, 0.0, 0.0])].concat();
     let alone = r#"{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":1}}}"#;
     let replaced = corners(&bytes, alone, &[(0, 2), (4, 24)], "", ALONE);
@@ -333,7 +333,7 @@ fn positions_may_be_quantized_or_replaced_one_by_one() {
 
 #[test]
 fn skins_put_points_where_their_joints_are() {
-    // The first point hangs on one joint, the second on the other, the third on both.
+    // The first point follows one joint, the second the other, the third both.
     let joints = [[0, 1, 0, 0], [1, 0, 0, 0], [0, 1, 0, 0]].concat();
     let weights = [[255, 0, 0, 0], [255, 0, 0, 0], [100, 100, 0, 0]].concat();
     let mut bind = [glam::Mat4::IDENTITY; 2];
@@ -345,7 +345,7 @@ fn skins_put_points_where_their_joints_are() {
 {{"bufferView":2,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}},
 {{"bufferView":3,"componentType":5126,"count":2,"type":"MAT4"}}"#
     );
-    // Where the mesh itself is does not matter.
+    // The transform of the mesh's own node does not matter.
     let more = r#""skins":[{"joints":[1,2],"inverseBindMatrices":3}],
 "nodes":[{"mesh":0,"skin":0,"translation":[50,0,0]},{"translation":[10,0,0],"children":[2]},{"translation":[0,20,0]}]"#;
     let found = corners(

@@ -1,4 +1,4 @@
-//! The same solid comes out of every format, the same to the last bit.
+//! Every format yields the same solid, equal to the last bit.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn every_format_gives_the_same_mesh() {
         let places = face.map(|index| mesh.points()[index as usize]);
         let [a, c, b] = from.map(|index| DVec3::from_array(points[index as usize].map(f64::from)));
         assert_eq!(places, [a, b, c]);
-        // Clockwise: the normal by the right hand points inwards.
+        // Clockwise: the normal by the right-hand rule points inwards.
         let [a, b, c] = places;
         assert!((b - a).cross(c - a).dot(a) < 0.0);
     }
@@ -88,11 +88,11 @@ fn buffers_lie_in_the_file_beside_it_or_behind_its_json() {
     let colors = sample.parts()[0].colors.clone().expect("colours");
     assert_eq!(colors.name, "gold");
     assert_eq!((colors.diffuse[0], colors.diffuse[2]), (1.0, 0.0));
-    // By the separators of another system, too.
+    // The separators of another system work, too.
     let sample = Sample::new("m.gltf", gltf_json("", r#","uri":".%5Ca%20b.bin""#));
     sample.beside("a b.bin", gltf_bytes());
     assert_eq!(sample.parts().len(), 1);
-    // Half the light is more than half of what a screen is sent.
+    // Half of the light takes more than half of the sRGB value.
     assert!((colors.diffuse[1] - 0.735_36).abs() < 1e-4);
 }
 

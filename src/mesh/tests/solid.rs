@@ -1,4 +1,4 @@
-//! An icosahedron, and how each format writes it.
+//! An icosahedron, written in each format.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ pub type Face = [u32; 3];
 
 /// Points and faces, counter-clockwise seen from outside.
 pub fn icosahedron() -> (Vec<Point>, Vec<Face>) {
-    // The golden ratio, so that single precision is not exact by luck.
+    // The golden ratio is irrational, so that single precision is not exact by luck.
     let long = f32::midpoint(1.0, 5_f32.sqrt());
     let mut points = Vec::new();
     for a in [-1.0, 1.0] {
@@ -44,7 +44,7 @@ fn volume(points: &[Point], face: Face) -> f32 {
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
-/// The same place with all its digits, for texts that are read in double precision.
+/// The same point with all its digits, for text files, which are read in double precision.
 fn exact(point: Point) -> [f64; 3] {
     point.map(f64::from)
 }
@@ -149,7 +149,7 @@ pub fn gltf_bytes() -> Vec<u8> {
     numbers.chain(indices).collect()
 }
 
-/// The JSON of a glTF file; `node` and `uri` are members with a comma in front, or nothing.
+/// The JSON of a glTF file; `node` and `uri` are JSON members with a leading comma, or empty.
 pub fn gltf_json(node: &str, uri: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],
@@ -186,7 +186,7 @@ pub fn glb(json: &str, chunk: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A file of each kind.
+/// The icosahedron in a file of each kind.
 pub fn all() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("m.obj", obj().into_bytes()),
