@@ -156,8 +156,7 @@ impl Files {
                 let full = wish.ask.with_ending(path.clone());
                 let is_unasked = wish.ask.writes() && full != path && full.exists();
                 if is_unasked || !wish.ask.takes(&full) {
-                    // The desktop asked about another name than the one that would be replaced, or does not know the
-                    // endings.
+                    // The desktop did not ask about replacing the file of this name, or does not know the endings.
                     self.prompt(wish, &full, "Path");
                     return None;
                 }
