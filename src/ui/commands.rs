@@ -394,7 +394,7 @@ pub fn is_about_files(command: &Command) -> bool {
     matches!(command, Ask(_) | Export | Leave(_) | Save)
 }
 
-/// Returns a key by what is printed on it.
+/// Returns the name of a key with its modifiers, as it is printed on the key.
 pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
     let name = ui.format_shortcut(&keys);
     let printed = [

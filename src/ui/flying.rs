@@ -228,7 +228,7 @@ impl Flying {
             _ if !ctrl => Ctrl::Up,
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
             Ctrl::Up | Ctrl::Waiting(_) | Ctrl::FlyingAlone if any_key => Ctrl::Shortcut,
-            // Elsewhere it is held for a click to come, such as one in a list.
+            // Outside the picture, it is held for a click that comes later.
             Ctrl::Up | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,

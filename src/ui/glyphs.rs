@@ -5,7 +5,7 @@ use egui::{Color32, ColorImage, Context, vec2};
 
 /// The character that the color picker writes on the button that copies a colour.
 const COPY: &str = "📋";
-/// Width and height of each of the two sheets of paper, in font sizes.
+/// Width and height of each of the two sheets of paper, and their distance, in font sizes.
 const SHEET: (f32, f32) = (0.55, 0.7);
 const APART: f32 = 0.18;
 

@@ -70,7 +70,7 @@ impl Layout {
         (self.outliner, self.is_alone) = (true, false);
     }
 
-    /// Returns whether a part of the window is shown, as a place to change it.
+    /// Returns the flag whether a part of the window is shown.
     pub fn part(&mut self, part: WindowPart) -> &mut bool {
         match part {
             WindowPart::Outliner => &mut self.outliner,

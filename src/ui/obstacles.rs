@@ -1,4 +1,4 @@
-//! The reasons why commands are not possible.
+//! The reasons why a command would do nothing now.
 
 use super::commands::Command;
 use super::dialogs::Ask;

@@ -254,7 +254,7 @@ impl Guard {
     }
 }
 
-/// The version of another program, and how it differs.
+/// The version of the file that another program has written, and how it differs.
 pub struct Theirs {
     /// What was read of the file.
     document: Result<(Document, Stamp), SceneError>,

@@ -123,7 +123,7 @@ impl PathPrompt {
         }
     }
 
-    /// Shows the prompt again, with the reason why the operation failed with the typed path.
+    /// Notes why the operation failed with the typed path, and lets the user type its name again.
     pub fn refuse(&mut self, why: String) {
         (self.refused, self.is_new) = (Some(why), true);
     }
@@ -344,7 +344,7 @@ pub fn question(
         ui.set_width(width);
         add(ui, &mut answer);
     });
-    // An accidental click beside the question is no answer: what is typed afterwards would go elsewhere and be lost.
+    // An accidental click beside it is no answer: typed text would be lost, and further typing would go elsewhere.
     if answer == Reply::Open && modal.should_close() && !modal.backdrop_response.clicked() {
         answer = Reply::Cancel;
     }

@@ -18,7 +18,7 @@ const RING: f32 = 7.0;
 const DECIMALS: usize = 3;
 /// Scenes with more faces are not planned again just to trace one pixel.
 const MOST_FACES: usize = 500_000;
-/// Greatest difference between a colour and its 8-bit value in a picture.
+/// Difference up to which an exact colour and that of a picture with 8 bits per channel count as equal.
 const SEEN: f64 = 1.01 / 255.0;
 
 /// Width of the window, and its distance from the explained point, in points.
