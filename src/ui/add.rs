@@ -1,4 +1,4 @@
-//! What can be added, in a menu and by name.
+//! The things that can be added to a scene, offered in the menu *Add* and in the finder.
 
 use egui::{Button, Ui};
 use egui_material_icons::MaterialIcon;
@@ -14,9 +14,9 @@ use crate::scene::{Mesh, Object, Projection, Scene, Shape};
 /// Something that can be added.
 #[derive(Clone, Copy, Debug)]
 pub enum Addition {
-    /// The shape in this place of [`Shape::examples`].
+    /// The shape at this index of [`Shape::examples`].
     Shape(usize),
-    /// The mesh in this place of [`SOLIDS`].
+    /// The mesh at this index of [`SOLIDS`].
     Solid(usize),
     /// A light.
     Light,
@@ -25,7 +25,7 @@ pub enum Addition {
 }
 
 impl Addition {
-    /// The change that adds it, in front of what the camera sees.
+    /// Returns the edit that adds it, in front of what the camera sees.
     pub fn edit(self, scene: &Scene) -> Edit {
         let (at, size) = in_front_of_camera(scene);
         match self {
@@ -33,11 +33,11 @@ impl Addition {
                 let shape = Shape::examples(at, size).swap_remove(index);
                 let low = scene.objects_bounds().map(|(low, _)| low.y);
                 let ground = || ground_distance(scene).map(|_| 0.0);
-                // In another one it would not be seen, and far over it things would not.
+                // In the plane of another one it would not be seen; far above it, it would hide what stands there.
                 let over_others = size * STEP * planes(scene).count() as f64;
                 let floor = low.or_else(ground).map(|floor| floor + over_others);
                 match (&shape, floor) {
-                    // What is there stands on it; where nothing is, it is the ground.
+                    // Existing objects end up standing on the new plane; without any, it is the ground.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.kind(), shape.moved(down))
@@ -59,10 +59,10 @@ impl Addition {
         }
     }
 
-    /// All of them, with their icons and names.
+    /// Yields all additions, with their icons and names.
     pub fn all() -> impl Iterator<Item = (Self, MaterialIcon, String)> {
         let shapes = Shape::examples(DVec3::ZERO, 1.0).into_iter().enumerate();
-        // Meshes have names of their own.
+        // Meshes are offered by the names of their solids.
         let shapes = shapes.filter(|(_, shape)| !matches!(shape, Shape::Mesh(_)));
         let shapes = shapes.map(|(index, shape)| {
             let name = format!("Add {}", shape.kind());
@@ -84,7 +84,7 @@ impl Addition {
     }
 }
 
-/// The menu of what can be added.
+/// Shows the entries of the menu *Add*.
 pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     for (addition, icon, name) in Addition::all() {
         let button = ui.add(Button::new((icons::text(icon), &name)));
@@ -94,37 +94,37 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     }
 }
 
-/// How large a new thing is, in heights of the picture.
+/// Height of a new thing, as a share of the picture's height.
 const SHARE: f64 = 0.2;
-/// How far a plane is over the one before it, in sizes of a new thing.
+/// Distance by which a new plane is raised for each existing plane, in sizes of a new thing.
 const STEP: f64 = 0.1;
-/// How far apart the places are that are tried, in sizes of a new thing.
+/// Distance between neighbouring candidate places, in sizes of a new thing.
 const APART: f64 = 1.3;
-/// With more things than this, only one place is looked at.
+/// Number of faces and objects above which only one place is tried.
 const CROWDED: usize = 100_000;
-/// With fewer, so many places are: all of them in most pictures.
+/// Number of places tried in less crowded scenes: enough for all of them in most pictures.
 const TRIES: usize = 192;
-/// What a thing is at last that has no room in its full size.
+/// Factor on the size of a thing for which no place is free at full size, as the last resort.
 const SMALLER: f64 = 0.5;
-/// How many steps to each side are tried.
+/// Number of steps tried to each side of the middle.
 const FARTHEST_STEPS: u32 = 8;
-/// How far what is there already must be from its middle, in sizes.
+/// Least distance of a new thing's middle from the bounding boxes of existing objects, in its sizes.
 const ROOM: f64 = 0.65;
-/// How much more of the picture what stands near may fill than what stands far away.
+/// Factor by which a thing on a near floor may look larger than one at the usual distance.
 const NEARER: f64 = 1.6;
-/// How far what it stands on may be, in distances where a new thing goes.
+/// Greatest distance of a floor that a new thing is put on, in units of the usual distance.
 const FARTHEST_FLOOR: f64 = 2.0;
-/// How upright the normal of a floor is: walls hold nothing up.
+/// Least vertical component of a floor's unit normal: things do not stand on walls.
 const LEVEL: f64 = 0.7;
-/// How far away the ground may be that a first floor is, in world units.
+/// Greatest distance of the ground for a first floor to be put there, in world units.
 const FARTHEST_GROUND: f64 = 2_000.0;
-/// What is nearer than this, in distances where a new thing goes, is not gone before.
+/// Objects nearer to the eye than this, in units of the usual distance, do not push a new thing nearer.
 const NEAREST: f64 = 0.1;
-/// The smallest that a new thing is, in world units.
+/// Smallest size of a new thing, in world units.
 const SMALLEST: f64 = 1e-6;
 
-/// Where a new thing goes, and how large it is: a fifth of the picture's height, as far away as the scene is, on the
-/// floor if one is seen there, and beside what is there already; before that, if there is no room.
+/// Finds the place and the size of a new thing: a fifth of the picture's height, as far away as the scene is, on the
+/// floor if one is seen there, and beside existing objects; in front of them if there is no room.
 fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let camera = &scene.camera;
     let Some(framing) = camera.framing() else {
@@ -133,9 +133,9 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let usual = usual_distance(scene);
     let half = scene.render.aspect_ratio() / 2.0;
     let is_inside = |place: f64, half: f64| place.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0);
-    // Nothing hangs in the air over a floor.
+    // Above the middle of the picture, a thing would hang in the air over the floor.
     let has_floor = planes(scene).next().is_some();
-    // Side by side first, then also between, then smaller.
+    // First a coarse grid of places, then a finer one, then the finer one with smaller things.
     let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, SMALLER)];
     let places = rounds.into_iter().flat_map(|(part, share)| {
         let step = SHARE * APART * part;
@@ -145,7 +145,7 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
             across.map(move |x| ([x, -y], share))
         })
     });
-    // To look costs as much as there is to be looked at.
+    // Each try costs as much as the scene has objects and faces.
     let tries = if scene.faces() + scene.objects.len() > CROWDED {
         1
     } else {
@@ -157,13 +157,13 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let (at, size) = free
         .next()
         .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
-    // Whole numbers read better in the inspector, where the scene is large enough for them.
+    // Rounded where the thing is large enough: whole numbers read better in the inspector.
     let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
     let at = DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z));
     (at, tidy(size).max(SMALLEST))
 }
 
-/// Where a light goes that shines on a place from above: no higher than what the picture shows.
+/// Returns the place of a light that shines on `at` from above, no higher than the picture shows.
 fn above(scene: &Scene, at: DVec3, size: f64) -> DVec3 {
     let framing = scene.camera.framing();
     let is_seen = |point: &DVec3| {
@@ -174,14 +174,15 @@ fn above(scene: &Scene, at: DVec3, size: f64) -> DVec3 {
     heights.into_iter().find(is_seen).unwrap_or(at)
 }
 
-/// 0, 1, -1, 2, -2 and so on steps, as far as any picture reaches.
+/// Yields 0, 1, −1, 2, −2 and so on, times `step`, far enough for any picture.
 fn outwards(step: f64) -> impl Iterator<Item = f64> {
     let forth_and_back = |steps: u32| [f64::from(steps), -f64::from(steps)];
     let steps = std::iter::once(0.0).chain((1..=FARTHEST_STEPS).flat_map(forth_and_back));
     steps.map(move |steps| steps * step)
 }
 
-/// What has room for so large a thing over a floor stands on that, however flat it is; what would lie in it hangs.
+/// Stands a shape on a floor that is less than half its size below it, however flat it is. Discs, which would lie in
+/// its surface, and planes stay where they are.
 fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
     let pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
     for piece in pieces.filter(|piece| piece.normal.y.abs() > LEVEL) {
@@ -196,7 +197,7 @@ fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
             Shape::Mesh(mesh) => lowest(&mut mesh.world_corners().flatten()),
             Shape::Disc(_) | Shape::Plane(_) => continue,
         };
-        // Rounding may have sunk it in.
+        // Rounding may have put it slightly below the floor.
         if (-size / 10.0..size / 2.0).contains(&gap) {
             shape = shape.moved(-up * gap);
         }
@@ -204,21 +205,21 @@ fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
     shape
 }
 
-/// The visible planes of a scene.
+/// Yields the visible planes of a scene.
 fn planes(scene: &Scene) -> impl Iterator<Item = &Object> {
     let is_plane = |object: &&Object| object.visible && matches!(object.shape, Shape::Plane(_));
     scene.objects.iter().filter(is_plane)
 }
 
-/// How far away the ground, y = 0, is in the middle of the picture; `None` where it is not seen, or very far.
+/// Returns the distance of the ground, y = 0, in the middle of the picture; `None` if it is not seen or very far.
 fn ground_distance(scene: &Scene) -> Option<f64> {
     let (origin, direction) = scene.camera.framing()?.ray([0.0, 0.0]);
     let distance = -origin.y / direction.y;
     (0.0 < distance && distance < FARTHEST_GROUND).then_some(distance)
 }
 
-/// How far away the middle of the scene is; where the eye is within it, half as far as it reaches. Where there is only
-/// a floor, as far as that.
+/// Returns the distance at which new things usually go: that of the scene's middle or, if the eye is within the scene,
+/// half its extent. In a scene of nothing but floors, it is the distance of the floor.
 fn usual_distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {
@@ -238,7 +239,7 @@ fn usual_distance(scene: &Scene) -> f64 {
     if ahead > reach { ahead } else { reach }
 }
 
-/// How large a fifth of the picture's height is at a distance.
+/// Returns the world size, at a distance, of a fifth of the picture's height.
 fn size_at(scene: &Scene, distance: f64) -> f64 {
     let camera = &scene.camera;
     SHARE
@@ -248,7 +249,7 @@ fn size_at(scene: &Scene, distance: f64) -> f64 {
         }
 }
 
-/// The place along a ray, and this share of the size there, if nothing is in the way.
+/// Returns the place along a ray and the size there, times `share`, if nothing is in the way.
 fn free_place(
     scene: &Scene,
     ray: (DVec3, DVec3),
@@ -269,9 +270,9 @@ fn free_place(
     }
     let mut pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
     if !is_on_floor && pieces.any(|piece| piece.normal.y.abs() > LEVEL) {
-        return None; // It would hang over the floor.
+        return None; // It would hang in the air over the floor.
     }
-    // It stands on a plane, not in it.
+    // Move it out of planes, so that it stands on them instead of being cut by them.
     for piece in planes(scene).filter_map(|object| object.shape.plane_piece()) {
         let (height, eye) = (piece.height(at), piece.height(origin));
         if height.abs() < size / 2.0 {
@@ -285,15 +286,15 @@ fn free_place(
     (!bounds.any(is_in_the_way)).then_some((at, size))
 }
 
-/// The place before what a ray sees, however near that is.
+/// Returns the place in front of what a ray hits, however near that is, and the size there.
 fn before_what_is_seen(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
     let (origin, direction) = ray;
-    // What is close to the eye fills the picture anyway.
+    // Things close to the eye fill the picture anyway.
     let seen = match first_met(scene, origin, direction) {
         Some((_, distance)) if distance > NEAREST * usual => distance,
         _ => f64::INFINITY,
     };
-    // Half of it is between its middle and what is seen; the farther, the larger.
+    // Half the size must fit between the place and the hit; in perspective the size grows with distance.
     let distance = match scene.camera.projection {
         Projection::Perspective => usual.min(seen / (1.0 + size_at(scene, 1.0) / 2.0)),
         Projection::Orthographic => usual.min(seen - size_at(scene, seen) / 2.0),
@@ -317,7 +318,7 @@ mod tests {
                 let mut with = scene.clone();
                 addition.edit(&scene).apply(&mut with).expect("added");
                 let framing = with.camera.framing().expect("a basis");
-                // A torus has nothing in its middle.
+                // A ray through the middle of a torus hits nothing.
                 let grid = (-20..=20)
                     .flat_map(|y| (-20..=20).map(move |x| [x, y].map(|at| f64::from(at) / 40.0)));
                 let mut grid = grid.map(|place| framing.ray(place));
@@ -329,7 +330,7 @@ mod tests {
         }
     }
 
-    /// Boxes around what was added.
+    /// Adds things by name and returns the bounding boxes of all objects.
     fn added(scene: &mut Scene, names: &[&str]) -> Vec<(DVec3, DVec3)> {
         for name in names {
             let (addition, ..) = Addition::all()
@@ -388,7 +389,7 @@ mod tests {
             heights.len() == 2 && (heights[1] - heights[0]).abs() > 1.0,
             "{heights:?}"
         );
-        // As low as the eye looks, what stands on the floor is high in the picture.
+        // The demo's camera looks down at a low angle, so what stands on the floor is high in the picture.
         let mut scene = Scene::demo();
         for _ in 0..6 {
             added(&mut scene, &["Add Light"]);
@@ -416,7 +417,7 @@ mod tests {
             let sizes: Vec<f64> = bounds.iter().map(|(low, high)| (*high - *low).x).collect();
             for (index, (low, high)) in bounds.iter().enumerate() {
                 let gap = floor.height(*low);
-                // Without one, they stand where the eye looks.
+                // If the floor comes last, they stand where the eye looks.
                 let is_on = gap.abs() < 1e-9 || (!floor_first && gap > -1.0);
                 assert!(is_on, "{floor_first}: {index} stands {gap} above it");
                 assert!((0.5..2.0).contains(&(sizes[index] / sizes[0])), "{sizes:?}");

@@ -1,4 +1,4 @@
-//! What the render thread has found out, and the document that it was about.
+//! Handles the answers of the render thread, and drops those about a document that is no longer open.
 
 use std::time::Duration;
 
@@ -9,12 +9,12 @@ use super::inspector::Outcome;
 use crate::editor::{Action, Time};
 use crate::worker::Answer;
 
-/// Time between two looks at whether something is still dragged.
+/// Time between two checks whether something is still being dragged.
 const LOOK: Duration = Duration::from_millis(50);
 
 impl App {
-    /// Takes up what the render thread has found out. What changes the document waits until nothing is dragged or
-    /// flown: it would be a step of its own in the middle of another.
+    /// Handles the render thread's answers. Those that change the document wait until nothing is dragged or flown: they
+    /// would be an undo step of their own in the middle of another.
     pub(super) fn take_answers(&mut self, ctx: &Context) {
         let is_busy = self.is_gesture(ctx) || self.editor.is_in_gesture();
         let is_moving = is_busy || self.editor.is_moving();
@@ -50,7 +50,7 @@ impl App {
         }
     }
 
-    /// Leaves what was about the document before, if another one is open.
+    /// Drops everything about the previous document if another one is open.
     pub(super) fn follow_document(&mut self) {
         let document = self.editor.documents();
         if std::mem::replace(&mut self.document, document) != document {

@@ -36,17 +36,17 @@ use crate::image::Image;
 use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
-/// What is said where a picture that is being written keeps the window open.
+/// Message shown while saving a picture keeps the window open.
 const CLOSING: &str = "Glint closes when the picture is written; Cancel gives it up";
-/// Where the list of recent files is kept between runs.
+/// Storage key of the list of recent files.
 const RECENT_KEY: &str = "recent files";
-/// Where it is kept which panels are shown.
+/// Storage key of the layout: which panels are shown.
 const LAYOUT_KEY: &str = "layout";
-/// Where it is kept in which folders paths were chosen.
+/// Storage key of the folders in which paths were chosen.
 const FOLDERS_KEY: &str = "folders";
-/// Where what was asked of exports is kept between runs.
+/// Storage key of the export settings.
 const EXPORTS_KEY: &str = "exports";
-/// Where the choice of the theme is kept between runs.
+/// Storage key of the theme.
 const THEME_KEY: &str = "theme";
 
 /// The window.
@@ -74,17 +74,17 @@ pub struct App {
     step_size: StepSize,
     pub(super) levels: Levels,
     pub(super) keys_are_taken: bool,
-    /// Commands for the next frame.
+    /// Commands that run in the next frame.
     pub(super) deferred: Vec<Command>,
-    /// What was found out, and waits.
+    /// Answers of the render thread that wait until nothing is dragged.
     pub(super) answers: Vec<Answer>,
-    /// Which of the documents was shown last, see [`Editor::documents`].
+    /// Number of the document that was shown last, see [`Editor::documents`].
     pub(super) document: u64,
-    /// The revision at which the user said that the window may close.
+    /// Revision at which the user agreed to close the window.
     pub(super) closing: Option<u64>,
-    /// The text that was copied last, and what it describes.
+    /// Text copied last, and the part of the scene that it describes.
     pub(super) copied: Option<(String, Scene)>,
-    /// When Escape had nothing to leave.
+    /// Time at which Escape was last pressed with nothing to leave, in seconds.
     pub(super) escaped: Option<f64>,
     pub(super) title: String,
     pub(super) theme: Theme,
@@ -93,7 +93,7 @@ pub struct App {
     pub(super) start: Option<StartWatch>,
 }
 
-/// What the window kept under this name when it was closed last.
+/// Returns the value that the window stored under this name when it was last closed.
 fn kept<T: DeserializeOwned>(cc: &eframe::CreationContext<'_>, name: &str) -> Option<T> {
     eframe::get_value(cc.storage?, name)
 }
@@ -109,7 +109,7 @@ impl App {
         cc.egui_ctx.options_mut(|options| {
             options.quit_shortcuts.clear();
             options.zoom_with_keyboard = true;
-            // What was typed is taken over before the click that ends it does something of its own.
+            // Commit typed text before the click that ends editing has an effect of its own.
             options.input_options.surrender_focus_on = SurrenderFocusOn::Presses;
         });
         let recent = kept(cc, RECENT_KEY).unwrap_or_default();
@@ -167,24 +167,24 @@ impl App {
         &self.editor
     }
 
-    /// Whether the picture on screen is the finished one of the newest scene.
+    /// Whether the picture on screen is finished and shows the newest scene.
     pub fn is_settled(&self) -> bool {
         self.pictures.is_settled(&self.editor)
             && self.editor.wanted_survey().is_none()
             && self.files.reading().is_none()
     }
 
-    /// Whether a question stands over the window.
+    /// Whether a question or the finder is open over the window.
     pub fn is_asking(&self) -> bool {
         self.files.is_asking() || self.finder.is_open
     }
 
-    /// Whether frames are being exported, or a video of them made.
+    /// Whether frames are being exported, or a video is being made of them.
     pub fn is_exporting(&self) -> bool {
         self.exports.is_busy(&self.pictures)
     }
 
-    /// Whether something is dragged, or flown.
+    /// Whether something is being dragged or flown.
     pub(super) fn is_gesture(&mut self, ctx: &Context) -> bool {
         ctx.input(|input| input.pointer.any_down()) || self.flying.is_gesture(ctx)
     }
@@ -194,7 +194,7 @@ impl App {
         self.pictures.shown(&self.editor).map(|frame| &*frame.image)
     }
 
-    /// The commands whose keys were pressed, if keys are free for that.
+    /// Returns the commands whose keys were pressed, as far as keys are free for them.
     fn commanded(&mut self, ui: &Ui, keys_are_free: bool) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.deferred);
         if keys_are_free {
@@ -203,10 +203,10 @@ impl App {
             && !(ui.text_edit_focused() || self.is_asking())
             && !ui.input(|input| input.pointer.any_down())
         {
-            // A color is picked in one, and a hint read.
+            // Popups such as the color picker and the list of hints stay open meanwhile.
             commands.extend(pressed(ui, false, goes_beside_popups));
         } else if ui.text_edit_focused() && !self.files.is_asking() {
-            // The text is taken over first, and the command runs when that is done.
+            // The text is committed first; the command runs in the next frame.
             self.deferred = pressed(ui, false, is_about_files);
             if !self.deferred.is_empty() {
                 ui.memory_mut(egui::Memory::stop_text_input);
@@ -238,8 +238,7 @@ impl App {
         }
     }
 
-    /// Closes the window once nothing is being written any more; an edit in the meantime keeps it
-    /// open.
+    /// Closes the window once nothing is being written any more. An edit in the meantime keeps it open.
     fn close_if_meant(&mut self, ctx: &Context) {
         match self.closing {
             Some(revision) if revision != self.editor.revision() => self.closing = None,
@@ -250,7 +249,7 @@ impl App {
         }
     }
 
-    /// While it plays, time passes as on the clock; the window is drawn again for the next frame.
+    /// Advances the playhead by real time during playback, and requests a repaint for the next frame.
     fn pass_time(&mut self, ctx: &Context) {
         if !self.editor.timeline().is_playing {
             return;
@@ -278,7 +277,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         if self.pictures.poll(ctx, &mut self.editor) {
-            // Nobody would read of it.
+            // Keep the window open, so that the error can be read.
             self.closing = None;
         }
         let is_measuring = self.pictures.worker().is_measuring();
@@ -300,7 +299,7 @@ impl eframe::App for App {
         self.take_dropped(ctx);
         let is_closing = ctx.input(|input| input.viewport().close_requested());
         if is_closing && self.closing.is_some() && self.pictures.worker().is_saving() {
-            // A second click does not end what the first one waits for.
+            // A second request to close must not abort the save that the first one waits for.
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.editor.notify(CLOSING.to_owned());
         } else if is_closing && self.closing.is_none() {
@@ -325,11 +324,11 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         keep_readable(ui);
         self.step_size.update(ui.ctx(), self.editor.scene());
-        // What had the keys when this frame's were pressed: a field loses its focus to Escape, and a
-        // menu closes, before this is asked.
+        // Whether a text field has the keys. `keys_are_taken` is from the end of the last frame: by now Escape may have
+        // taken the focus off a field or closed a menu.
         let was_typing = ui.text_edit_focused();
         let keys_are_free = !self.keys_are_taken && !was_typing;
-        // What is recorded stays as it was flown.
+        // A recorded flight stays as it was flown.
         let is_recording = self.editor.timeline().recorded().is_some();
         let gives_up = !is_recording && self.flying.gives_up(ui);
         let mut out = UiRequests {
@@ -346,7 +345,7 @@ impl eframe::App for App {
             self.editor.notify(words);
         }
         match dragged(&ctx) {
-            // What was typed before is a step of its own, also where the button that ended it is down since.
+            // A value typed before is its own undo step, even if the press that ended typing also starts this drag.
             Some(DragStep::Begins) => out.actions.insert(0, Action::BeginGesture),
             Some(DragStep::IsGivenUp) => out.actions.push(Action::CancelGesture),
             Some(DragStep::GoesOn) | None => {}
@@ -354,13 +353,13 @@ impl eframe::App for App {
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
         if self.files.is_asking() {
-            // Its field would have the keys of the question.
+            // Its text field would take the keys of the question.
             self.finder.is_open = false;
         }
         self.finder
             .show(&ctx, &self.editor, &self.files.recent, &mut out);
         self.why.show(&ctx, &self.editor, self.layout.aspect);
-        // Still pictures are looked at, not flown through: they would be gone.
+        // Still pictures cannot be flown through: moving the camera would discard them.
         let (place, flown) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let screen = Screen::new(&self.editor.shown().camera, place.rect);
@@ -371,7 +370,7 @@ impl eframe::App for App {
                 });
         }
         let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());
-        // Space presses a button that has the focus, and does not lift the camera as well.
+        // Space presses the focused button and must not move the camera up as well.
         let is_free = ui.memory(|memory| memory.focused().is_none());
         let flies = keys_are_free && is_free && !self.outliner.has_keys(ui);
         let speed = (&**self.editor.scene(), self.layout.fly_speed);
@@ -398,7 +397,7 @@ impl eframe::App for App {
             || self.files.is_asking()
             || self.finder.is_open
             || dragged(&ctx).is_some()
-            // What is carried is known by its place in a list.
+            // A drag payload refers to its item by its index in a list, which commands may change.
             || DragAndDrop::has_any_payload(&ctx)
             || self.tools.is_dragging()
             || self.still.is_marking()
@@ -412,7 +411,7 @@ impl eframe::App for App {
         if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
             self.pictures.worker().request_thumbnails(wishes);
         }
-        // A question would keep the live view waiting.
+        // Asked after the live view was submitted: a question would keep it waiting.
         self.pictures.ask(&self.editor, questions);
         let is_settled = self.is_settled();
         if let Some(screenshot) = &mut self.screenshot
@@ -428,7 +427,7 @@ impl eframe::App for App {
         }
     }
 
-    /// A picture of the window shows nothing of where the pointer happens to be.
+    /// Ignores pointer movement during a screenshot, which must not show where the pointer happens to be.
     fn raw_input_hook(&mut self, _ctx: &Context, input: &mut egui::RawInput) {
         if self.screenshot.is_some() {
             let is_pointer = |event: &Event| matches!(event, Event::PointerMoved(_));

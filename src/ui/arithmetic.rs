@@ -1,9 +1,9 @@
-//! Sums that are typed in place of a number.
+//! Arithmetic expressions that are typed instead of a number.
 
-/// Letters of the longest sum that is read.
+/// Longest expression that is read, in bytes.
 const LONGEST: usize = 100;
 
-/// What a sum such as `2 * (1.5 + 3) / -4` comes to, whose numbers `read` reads; `None` if the text is none.
+/// Evaluates an expression such as `2 * (1.5 + 3) / -4`, whose numbers `read` parses; `None` if it is invalid.
 pub fn calculate(text: &str, read: fn(&str) -> Option<f64>) -> Option<f64> {
     if text.len() > LONGEST {
         return None;
@@ -14,14 +14,14 @@ pub fn calculate(text: &str, read: fn(&str) -> Option<f64>) -> Option<f64> {
     Some(value).filter(|value| is_all && value.is_finite())
 }
 
-/// What is left to be read.
+/// The rest of the expression still to be read.
 struct Sum<'t> {
     rest: &'t str,
     read: fn(&str) -> Option<f64>,
 }
 
 impl Sum<'_> {
-    /// Whether this sign comes next; then it is passed.
+    /// Returns whether this sign comes next, and skips it if so.
     fn takes(&mut self, sign: char) -> bool {
         let after = self.rest.trim_start().strip_prefix(sign);
         self.rest = after.unwrap_or(self.rest);

@@ -1,4 +1,4 @@
-//! Keeping unsaved work safe while the program runs, and taking it up after one that crashed.
+//! Keeps unsaved work safe while the program runs, and recovers it after a crash.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,32 +13,32 @@ use crate::worker::Background;
 /// Time between two autosaves.
 const INTERVAL: Duration = Duration::from_secs(5);
 
-/// Time between two looks at whether it is written.
+/// Time between two checks whether a write has finished.
 const POLL: Duration = Duration::from_millis(100);
 
-/// What messages are about that tell why it does not succeed.
+/// Subject of the messages about failed autosaves.
 const AUTOSAVE: &str = "Autosave";
 
 /// The state of autosaving.
 #[derive(Default)]
 pub struct Autosave {
-    /// Where work is kept; `None` keeps none.
+    /// Folder for unsaved work; `None` disables autosaving.
     folder: Option<PathBuf>,
-    /// The own place there, once there is one.
+    /// This program's own recovery file in it, once there is one.
     recovery: Option<Arc<Recovery>>,
-    /// What is kept: revision, and since when.
+    /// Revision that is on disk, and since when.
     kept: Option<(u64, Instant)>,
-    /// What is being written: the revision, or why it could not be.
+    /// Write in progress: yields the revision, or why it failed.
     writing: Background<Result<u64, String>>,
     tried: Option<Instant>,
-    /// Why nothing could be kept, as it was told.
+    /// Why nothing could be kept, as last reported.
     why: Option<String>,
-    /// The document that was looked for work of that a crashed program left, see [`Editor::documents`].
+    /// Document for which work left by a crash was last looked for, see [`Editor::documents`].
     looked_for: u64,
 }
 
 impl Autosave {
-    /// Takes a place in `folder`, and hands what a crashed program left there to the editor.
+    /// Creates a recovery file in `folder`, and hands work left there by a crashed program to the editor.
     pub fn start(folder: Option<&Path>, editor: &mut Editor) -> Self {
         let recovery = folder.and_then(|folder| Recovery::new(folder).ok().map(Arc::new));
         let mut autosave = Self {
@@ -50,7 +50,7 @@ impl Autosave {
         autosave
     }
 
-    /// Hands the work to the editor that a crashed program left of its document; of any, if that has no file.
+    /// Hands the editor the work that a crash left for its document, or for any if its document has no file.
     fn take_up(&mut self, editor: &mut Editor) {
         let recovery = self.recovery.as_ref();
         let leftover = recovery.and_then(|recovery| recovery.take_leftover(editor.path()));
@@ -70,21 +70,21 @@ impl Autosave {
         self.looked_for = editor.documents();
     }
 
-    /// Since when the unsaved work is safe, if there is any.
+    /// Time since which the unsaved work is safe, if there is any.
     pub fn kept_since(&self) -> Option<Instant> {
         self.kept.map(|(_, since)| since)
     }
 
-    /// Keeps unsaved work on disk, every few seconds while there is new work. A large scene takes longer
-    /// to write than a frame: a thread of its own does it.
+    /// Keeps unsaved work on disk, every few seconds while it changes. Writing a large scene takes longer than a frame,
+    /// so it happens on a separate thread.
     pub fn tick(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(recovery) = self.recovery.clone() else {
             return self.take_place(ctx, editor);
         };
-        // What is still written may be of the document before, whose file it would take up.
+        // A pending write may be of the previous document, and would overwrite the recovered work.
         if self.looked_for != editor.documents() && !self.writing.is_awaited() {
             self.looked_for = editor.documents();
-            // What is edited already is not replaced.
+            // A document that has been edited already is not replaced.
             if editor.path().is_some() && !editor.is_dirty() {
                 self.take_up(editor);
             }
@@ -118,7 +118,7 @@ impl Autosave {
         ctx.request_repaint_after(POLL);
     }
 
-    /// Takes up what has been written since.
+    /// Handles a write that has finished.
     fn take_written(&mut self, editor: &mut Editor) {
         let Some(written) = self.writing.take() else {
             return;
@@ -132,7 +132,7 @@ impl Autosave {
         }
     }
 
-    /// Looks for a place once more, if there was none when the program began.
+    /// Tries once more to create the recovery file if that failed when the program began.
     fn take_place(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(folder) = self.folder.clone() else {
             return;
@@ -153,7 +153,7 @@ impl Autosave {
         }
     }
 
-    /// Whether the last try is so long ago that there may be another, which counts from now on.
+    /// Returns whether the last attempt is long enough ago for another one, which counts from now on.
     fn may_try(&mut self, ctx: &Context) -> bool {
         if let Some(wait) = self.tried.and_then(|at| INTERVAL.checked_sub(at.elapsed())) {
             ctx.request_repaint_after(wait);
@@ -163,7 +163,7 @@ impl Autosave {
         true
     }
 
-    /// Tells why work cannot be kept, as long as that is so.
+    /// Reports why work cannot be kept, once for each reason, and clears the report once it can.
     fn tell(&mut self, editor: &mut Editor, why: Option<String>) {
         if self.why == why {
             return;
@@ -178,9 +178,9 @@ impl Autosave {
         self.why = why;
     }
 
-    /// The program ends as the user wished: there is nothing to recover.
+    /// Removes the recovery file: the program ends normally, so there is nothing to recover.
     pub fn end(&mut self) {
-        // What is still being written must not be there afterwards.
+        // A pending write must not create it again afterwards.
         std::mem::take(&mut self.writing).finish();
         if let Some(recovery) = &self.recovery {
             recovery.clear();

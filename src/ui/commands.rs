@@ -1,4 +1,4 @@
-//! What the user can command, and the one table of keys that both drives the window and fills
+//! The commands that the user can give, and the single table of keys that both drives the window and fills
 //! Help → Shortcuts.
 
 use std::path::PathBuf;
@@ -14,39 +14,39 @@ use crate::scene::Aspect;
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Leave the document, asking about unsaved changes.
+    /// Leave the document after asking about unsaved changes, then do this.
     Leave(Next),
-    /// Choose a file, or a folder, for this.
+    /// Ask for a file or a folder for this purpose.
     Ask(Ask),
     /// Write the document to its file.
     Save,
-    /// Take the last step back.
+    /// Undo the last step.
     Undo,
-    /// Bring the step taken back again.
+    /// Redo the step undone last.
     Redo,
-    /// Put the selected items on the clipboard, as text.
+    /// Copy the selected items to the clipboard, as text.
     Copy,
-    /// The same, and delete them.
+    /// Copy the selected items to the clipboard and delete them.
     Cut,
-    /// Ask for what is on the clipboard.
+    /// Ask the desktop for the contents of the clipboard.
     RequestPaste,
-    /// Add what a text from the clipboard describes.
+    /// Add what this text from the clipboard describes.
     Paste(String),
-    /// Select all objects and lights, or all keys where they are meant.
+    /// Select all objects and lights, or all keys if the pointer is over the timeline.
     SelectAll,
-    /// Select all objects that wear the pack of the selected one.
+    /// Select all objects with the same color pack as the selected one.
     SelectSamePack,
-    /// List the selected objects as a group.
+    /// Make a group of the selected objects.
     Group,
-    /// List the selected objects by themselves.
+    /// Take the selected objects out of their groups.
     Ungroup,
-    /// Keep one of all packs that are equal.
+    /// Keep only one of any color packs that are equal.
     MergePacks,
-    /// Come back to this view when asked to.
+    /// Save this view as a bookmark.
     AddBookmark,
-    /// Look from the bookmark in this place.
+    /// Go to the bookmark at this index.
     GoToBookmark(usize),
-    /// Copy what is selected, beside it.
+    /// Copy what is selected, next to the original.
     Duplicate,
     /// Delete what is selected: items or keys.
     Delete,
@@ -56,43 +56,43 @@ pub enum Command {
     MoveUp,
     /// Move the selected item down in its list.
     MoveDown,
-    /// The live view.
+    /// Show the live view.
     Live,
-    /// The live view at 64 pixels.
+    /// Show the live view at 64 pixels.
     LowRes,
-    /// The still picture.
+    /// Show the still picture.
     HighRes,
-    /// The still picture with its pixels as those of the screen, or all of it again.
+    /// Show the still picture with one screen pixel for each of its pixels, or all of it again.
     ActualSize,
-    /// Give the still picture up.
+    /// Abort the still picture.
     CancelStill,
-    /// Perspective projection.
+    /// Switch to perspective projection.
     Perspective,
-    /// Orthographic projection.
+    /// Switch to orthographic projection.
     Orthographic,
     /// Show the markers of lights.
     MarkersOn,
     /// Hide the markers of lights.
     MarkersOff,
-    /// Leave what is going on, then deselect; with nothing to leave, twice asks to quit.
+    /// Leave the innermost mode or window, or deselect; with nothing left to leave, pressing it twice asks to quit.
     Escape,
     /// Play or pause.
     Play,
-    /// The playhead to the first frame.
+    /// Move the playhead to the first frame.
     FirstFrame,
-    /// The playhead to the last frame.
+    /// Move the playhead to the last frame.
     LastFrame,
-    /// The playhead one frame back.
+    /// Move the playhead one frame back.
     FrameBack,
-    /// The playhead one frame on.
+    /// Move the playhead one frame on.
     FrameOn,
-    /// The playhead to the key before it.
+    /// Move the playhead to the previous key.
     PreviousKey,
-    /// The playhead to the key after it.
+    /// Move the playhead to the next key.
     NextKey,
-    /// Start to record the flight.
+    /// Start to record a flight.
     Record,
-    /// Stop recording and make keys.
+    /// Stop recording and turn the flight into keys.
     StopRecording,
     /// Set a key at the playhead.
     AddKey,
@@ -100,21 +100,21 @@ pub enum Command {
     SelectKeys,
     /// Look through the shot camera, or at it.
     LookThrough,
-    /// Put what is selected on what is below it.
+    /// Put what is selected down on what is below it.
     PutDown,
-    /// Make one mesh of the selected triangles and meshes, or of a triangle and all that share corners with it.
+    /// Join the selected triangles and meshes, or a triangle and all connected to it by shared corners, to one mesh.
     Join,
-    /// Put triangles in place of the selected mesh.
+    /// Replace the selected mesh by separate triangles.
     Separate,
     /// Replace the keys of the camera by a ready-made flight around or towards what is selected.
     Preset(Preset),
-    /// Give the flight another timing.
+    /// Change the timing of the flight.
     Retime(Retime),
-    /// Open the window of exports, or close it.
+    /// Open or close the window of exports.
     Export,
-    /// Everything that is selected into the picture.
+    /// Move the camera so that everything that is selected is in the picture.
     FrameSelected,
-    /// Everything into the picture.
+    /// Move the camera so that everything is in the picture.
     FrameAll,
     /// Look along -z.
     ViewFront,
@@ -122,7 +122,7 @@ pub enum Command {
     ViewRight,
     /// Look down.
     ViewTop,
-    /// What of the light the live view shows.
+    /// Choose which part of the light the live view shows.
     Aspect(Aspect),
     /// Show or hide this part of the window.
     Part(WindowPart),
@@ -132,56 +132,56 @@ pub enum Command {
     Lab,
     /// Hide all panels, or show them again.
     PictureAlone,
-    /// Dark or light panels.
+    /// Switch to the dark or the light theme.
     Theme(Theme),
-    /// Larger or smaller letters and buttons.
+    /// Make letters and buttons larger or smaller.
     Zoom(Zoom),
-    /// Explain what a ray sees: from where, and in which direction.
+    /// Explain the colour that a ray sees: its origin and its direction.
     Why(DVec3, DVec3),
     /// Hide or show what is selected.
     ToggleVisible,
-    /// Look for a command or a thing by its name.
+    /// Find a command or a thing by its name.
     Find,
     /// Show or hide the list of shortcuts.
     Shortcuts,
 }
 
-/// How large letters and buttons are to be.
+/// A change of the size of letters and buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zoom {
     /// A tenth larger.
     In,
     /// A tenth smaller.
     Out,
-    /// As the desktop says.
+    /// The desktop's size.
     Usual,
 }
 
-/// What is done once unsaved changes are out of the way.
+/// What follows once unsaved changes are saved or discarded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
     /// Start an empty document.
     New,
-    /// Start from the example in this place of [`crate::scene::EXAMPLES`].
+    /// Start from the example at this index of [`crate::scene::EXAMPLES`].
     Example(usize),
     /// Choose a file and open it.
     Choose,
     /// Open this file.
     Open(PathBuf),
-    /// Close the window; what is exported is asked about.
+    /// Close the window, after asking about running exports.
     Quit,
-    /// Close the window, whatever is exported.
+    /// Close the window, even if exports are running.
     QuitAnyway,
 }
 
-/// A key, what it does and in which words.
+/// A command, its keys and its description.
 #[derive(Clone, Debug)]
 pub struct Shortcut {
-    /// What it does.
+    /// The command.
     pub command: Command,
-    /// The key, and a second one for some.
+    /// Its key, and for some commands a second one.
     pub keys: &'static [KeyboardShortcut],
-    /// What Help says about it.
+    /// Description in Help.
     pub what: &'static str,
 }
 
@@ -207,7 +207,7 @@ macro_rules! keys {
     };
 }
 
-/// Every command key. Of two keys that differ in a modifier, the one with more comes first.
+/// All keys of commands. Of two keys that differ only in modifiers, the one with more modifiers comes first.
 pub const SHORTCUTS: &[Shortcut] = keys! {
     HighRes [plain(Key::H)] "High-res picture",
     Lab [ctrl(Key::L)] "Show or hide the lab",
@@ -264,7 +264,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Shortcuts [plain(Key::F1)] "Show these shortcuts",
 };
 
-/// The commands that have no key.
+/// The commands without a key, with their descriptions.
 pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Live, "Live view"),
     (Command::SelectKeys, "Select all keys"),
@@ -298,7 +298,7 @@ pub const KEYLESS: &[(Command, &str)] = &[
     (Command::Theme(Theme::Light), "Light theme"),
 ];
 
-/// Every command without a choice in it: what it does, and the keys for it.
+/// Yields every command that needs no further choice, with its description and its first key.
 pub fn all() -> impl Iterator<Item = (&'static Command, &'static str, Option<KeyboardShortcut>)> {
     let keyed = SHORTCUTS.iter();
     let keyed = keyed.map(|keyed| (&keyed.command, keyed.what, keyed.keys.first().copied()));
@@ -306,19 +306,19 @@ pub fn all() -> impl Iterator<Item = (&'static Command, &'static str, Option<Key
     keyed.chain(keyless.map(|(command, what)| (command, *what, None)))
 }
 
-/// What a command does, in words.
+/// Returns the description of a command.
 pub fn what_of(command: &Command) -> Option<&'static str> {
     all().find_map(|(other, what, _)| (other == command).then_some(what))
 }
 
-/// The commands whose keys were pressed in this frame. A key that repeats because it is held
-/// commands nothing more, but undo and redo; while keys fly the camera, none with Ctrl counts. Keys
-/// of commands that are not heard stay for others.
+/// Takes the keys of commands out of this frame's events and returns the commands. A key that repeats because it is
+/// held counts only for undo and redo. While keys fly the camera, those with Ctrl do not count. Keys of commands that
+/// `is_heard` rejects stay in the events.
 pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) -> Vec<Command> {
     let mut pressed = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| {
-            // The desktop's own keys for these come as what they mean.
+            // The desktop translates its own keys for these into events.
             let from_desktop = match event {
                 Event::Copy => Some(Command::Copy),
                 Event::Cut => Some(Command::Cut),
@@ -327,7 +327,7 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
             };
             let from_desktop = from_desktop.filter(|command| is_heard(command) && !is_flying);
             if let Some(command) = from_desktop {
-                // Selected words of a message can be copied too.
+                // The event stays, because selected text of a message can be copied too.
                 let is_copy = command == Command::Copy;
                 pressed.push(command);
                 return is_copy;
@@ -364,12 +364,12 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
     pressed
 }
 
-/// Whether Escape gives up what is being dragged, whatever keys are held for it; it means nothing else then.
+/// Consumes Escape with any modifiers, so that it only cancels the drag; returns whether it was pressed.
 pub fn take_escape(ui: &Ui) -> bool {
     ui.input_mut(|input| input.consume_key(input.modifiers, Key::Escape))
 }
 
-/// The first key of a command, as menus show it.
+/// Returns the first key of a command, as menus show it.
 pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
     let shortcut = SHORTCUTS
         .iter()
@@ -377,24 +377,24 @@ pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
     Some(name_of(ui, shortcut.keys[0]))
 }
 
-/// What a button says that does this, with its key.
+/// Returns the text of a button for a command, with its key.
 pub fn with_key(ui: &Ui, words: &str, command: &Command) -> String {
     let key = key_of(ui, command);
     key.map_or_else(|| words.to_owned(), |key| format!("{words} ({key})"))
 }
 
-/// Whether the command is heard while a popup is open, which stays so.
+/// Whether the command is heard while a popup is open, which then stays open.
 pub fn goes_beside_popups(command: &Command) -> bool {
     matches!(command, Command::Undo | Command::Redo | Command::Save)
 }
 
-/// Whether the command is heard while a text is edited, which then ends.
+/// Whether the command is heard while a text is edited, which ends the editing.
 pub fn is_about_files(command: &Command) -> bool {
     use Command::{Ask, Export, Leave, Save};
     matches!(command, Ask(_) | Export | Leave(_) | Save)
 }
 
-/// A key as it is printed on it.
+/// Returns the name of a key with its modifiers, as it is printed on the key.
 pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
     let name = ui.format_shortcut(&keys);
     let printed = [

@@ -1,5 +1,5 @@
-//! Asking for a path: the desktop's own dialog, on a thread of its own, or a prompt in the window
-//! where the desktop offers none.
+//! Asking for a path: with the desktop's own dialog, on a separate thread, or with a prompt in the window if the
+//! desktop offers none.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use egui::Context;
 
 use crate::worker::Background;
 
-/// What a path is asked for.
+/// The purpose of a path that is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// A scene to open.
@@ -18,7 +18,7 @@ pub enum Ask {
     SaveScene,
     /// Where to write the picture.
     SaveImage,
-    /// A camera path to take the keys of.
+    /// A camera path whose keys are imported.
     ImportPath,
     /// Where to write the camera path.
     ExportPath,
@@ -26,12 +26,12 @@ pub enum Ask {
     ExportJob,
     /// Where to write the scene for POV-Ray.
     ExportPovray,
-    /// The folder for frames.
+    /// The folder for exported frames.
     ExportFolder,
 }
 
 impl Ask {
-    /// What the dialog is called.
+    /// The title of the dialog.
     pub fn title(&self) -> &'static str {
         match self {
             Self::OpenScene => "Open scene",
@@ -54,8 +54,8 @@ impl Ask {
         )
     }
 
-    /// The path, with the ending that such files have if it has none, unless it is a file to be read; scenes have
-    /// always that of scenes, whatever stands before it.
+    /// Returns the path with the usual ending if it has none. A path of an existing file to be read stays as it is.
+    /// Scenes always get their own ending, after any other one.
     pub fn with_ending(&self, mut path: PathBuf) -> PathBuf {
         if !self.writes() && path.is_file() {
             return path;
@@ -64,7 +64,7 @@ impl Ask {
         let doubled = format!(".{own}.{own}");
         let name = path.to_string_lossy();
         if name.ends_with(&doubled) && !path.exists() {
-            // Typed in front of an ending that was there already.
+            // The name was typed in front of an ending that was there already.
             return path.with_extension("");
         }
         match path.extension() {
@@ -78,14 +78,14 @@ impl Ask {
         }
     }
 
-    /// Whether a file of this name can be what is asked for: pictures and tables are written as their endings say.
+    /// Whether a file of this name will do: the ending of a picture or a camera path decides its format.
     pub fn takes(&self, path: &Path) -> bool {
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
         !matches!(self, Self::SaveImage | Self::ExportPath)
             || self.endings().iter().any(|known| ending == *known)
     }
 
-    /// The endings that files of this kind have; the first is added where there is none.
+    /// The endings of such files; the first one is added to a path without an ending.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::OpenScene | Self::SaveScene => &["ron"],
@@ -101,7 +101,7 @@ impl Ask {
 
 /// Something that asks the user for a path.
 pub trait Dialogs {
-    /// Asks, starting from `suggested`; the answer, or `None` for cancelled, arrives later.
+    /// Asks, starting from `suggested`. The answer arrives later; `None` means cancelled.
     fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Background<Option<PathBuf>>;
 }
 

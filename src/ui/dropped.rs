@@ -1,26 +1,26 @@
-//! What files that are dropped onto the window together are for.
+//! Decides what to do with files that are dropped onto the window together.
 
 use std::path::PathBuf;
 
 use crate::files::has_ending;
 use crate::mesh::is_mesh_file;
 
-/// What is done with them.
+/// What to do with dropped files.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Dropped {
-    /// This one is opened; meshes beside it are those that it refers to.
+    /// Open this one; meshes dropped with it are those that it refers to.
     Scene(PathBuf),
-    /// These are added, and this is the flight. What is beside them, as materials and textures, is read with them.
+    /// Import these meshes and this flight. Files dropped with them, such as materials and textures, are read along.
     Parts {
-        /// Files of meshes.
+        /// Mesh files.
         meshes: Vec<PathBuf>,
-        /// The keys of a camera.
+        /// Keys of a camera.
         path: Option<PathBuf>,
     },
 }
 
 impl Dropped {
-    /// `None` where nothing was dropped.
+    /// Decides what to do with these files; `None` if there are none.
     pub fn of(files: &[PathBuf]) -> Option<Self> {
         let first_with = |ending: &str| {
             let mut files = files.iter();
@@ -31,14 +31,14 @@ impl Dropped {
         let (scene, path) = (first_with("ron"), first_with("csv"));
         match (scene, path) {
             (Some(scene), _) => Some(Self::Scene(scene)),
-            // Whoever opens it says why it is no scene.
+            // Opening it reports why it is not a scene.
             (None, None) if meshes.is_empty() => files.first().cloned().map(Self::Scene),
             (None, path) => Some(Self::Parts { meshes, path }),
         }
     }
 
-    /// How many scenes and tables among them nothing is done with. What else is there is read with the others, or
-    /// nothing for us.
+    /// Returns the number of scenes and tables among the files that are not used. Other files are read along with the
+    /// used ones or concern other programs.
     pub fn left_of(&self, files: &[PathBuf]) -> usize {
         let is_wanted = |file: &&PathBuf| has_ending(file, "ron") || has_ending(file, "csv");
         let wanted = files.iter().filter(is_wanted).count();

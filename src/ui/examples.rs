@@ -1,4 +1,4 @@
-//! The menu of the examples, each with a small picture.
+//! The menu of example scenes, each with a thumbnail.
 
 use egui::{Button, Context, Image, TextureHandle, TextureOptions, Ui, load::SizedTexture, vec2};
 
@@ -9,12 +9,12 @@ use super::upload::whole;
 use crate::scene::EXAMPLES;
 use crate::worker::ThumbnailJob;
 
-/// The name of the first example's picture; others follow, and no key has such a name.
+/// Thumbnail name of the first example; the others follow. Thumbnails of keys are named by their small indices.
 const FIRST: u64 = 1 << 48;
-/// Size of the pictures, in points.
+/// Size of the thumbnails, in points.
 const SIZE: [u32; 2] = [96, 64];
 
-/// The pictures.
+/// The thumbnails of the examples.
 #[derive(Default)]
 pub struct Examples {
     pictures: [Option<TextureHandle>; EXAMPLES.len()],
@@ -23,7 +23,7 @@ pub struct Examples {
 }
 
 impl Examples {
-    /// Takes the finished pictures of examples out of all.
+    /// Takes the finished thumbnails of examples out of `pictures`, which may contain others.
     pub fn take(&mut self, ctx: &Context, pictures: &mut Vec<(u64, crate::image::Image)>) {
         pictures.retain(|(name, image)| {
             let index = name.checked_sub(FIRST).map(|index| index as usize);
@@ -35,7 +35,7 @@ impl Examples {
         });
     }
 
-    /// What is to be traced, once the menu was opened.
+    /// Returns the thumbnails to be traced, once the menu has been opened.
     pub fn wishes(&mut self, scale: f32) -> Vec<ThumbnailJob> {
         if !self.is_seen || std::mem::replace(&mut self.is_asked, true) {
             return Vec::new();
@@ -50,7 +50,7 @@ impl Examples {
         jobs.collect()
     }
 
-    /// The entries of the menu.
+    /// Shows the entries of the menu.
     pub fn menu(&mut self, ui: &mut Ui, out: &mut UiRequests) {
         self.is_seen = true;
         let size = vec2(SIZE[0] as f32, SIZE[1] as f32);

@@ -1,4 +1,4 @@
-//! What is wished of files, and what comes of it.
+//! File operations that the user requested, and their outcomes.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -10,37 +10,37 @@ use super::prompts::PathPrompt;
 use crate::editor::Editor;
 use crate::worker::Background;
 
-/// A dialog that comes back empty sooner than a hand can cancel it was never shown.
+/// A dialog that returns nothing sooner than a user could cancel it was never shown.
 const NO_DIALOG: Duration = Duration::from_millis(400);
 
-/// What became of the wishes, for the window to act on.
+/// The outcome of a file operation, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileOutcome {
-    /// The window may close, as far as the document goes.
+    /// The window may close as far as the document is concerned.
     AskToQuit,
-    /// The window may close, whatever is going on.
+    /// The window may close, whatever else is running.
     Quit,
-    /// The still picture is to be traced and written here.
+    /// The still picture is to be traced and written to this path.
     SaveImage(PathBuf),
-    /// Frames are to be written here.
+    /// Frames are to be exported to this folder.
     ExportFolder(PathBuf),
 }
 
-/// A path that is wanted, and what follows when it is there.
+/// A path that is wanted, and what follows once it is known.
 #[derive(Clone)]
 pub struct PathRequest {
-    /// What for.
+    /// The purpose of the path.
     pub ask: Ask,
     /// What follows.
     pub then: Option<Next>,
-    /// The document that was asked about.
+    /// The document it was requested for, see [`Editor::documents`].
     pub document: u64,
-    /// Its state then.
+    /// The document's revision at that time.
     pub revision: u64,
 }
 
 impl PathRequest {
-    /// About a document as it is now.
+    /// Creates a request for the document in its current state.
     pub fn new(editor: &Editor, ask: Ask, then: Option<Next>) -> Self {
         Self {
             ask,
@@ -51,42 +51,42 @@ impl PathRequest {
     }
 }
 
-/// A question over the window.
+/// A question shown over the window.
 pub enum Prompt {
-    /// What becomes of unsaved changes.
+    /// Whether to save unsaved changes.
     Unsaved(Next),
-    /// The answer was to save: as soon as a recorded flight has become keys.
+    /// The answer was to save, which waits until a recorded flight has become keys.
     Saving(Next),
-    /// Whether quitting is meant.
+    /// Whether to quit.
     Quit,
-    /// Which file, where the desktop has no dialog for that.
+    /// Which file, if the desktop offers no dialog.
     Path(PathRequest, PathPrompt),
-    /// Another program has written the file; the wish is to save, if it is one.
+    /// What to do about a file that another program has changed; with the request to save that revealed it, if any.
     Outside(Box<Theirs>, Option<PathRequest>),
 }
 
 /// A desktop dialog that is open.
 pub struct Waiting {
-    /// What it asks for.
+    /// The request it is for.
     pub wish: PathRequest,
     answer: Background<Option<PathBuf>>,
     since: Instant,
 }
 
-/// What a desktop dialog has answered.
+/// The state of a desktop dialog.
 pub enum Answered {
-    /// Nothing yet.
+    /// No answer yet.
     NotYet,
-    /// A path.
+    /// A path was chosen.
     Path(PathBuf),
-    /// That there is none.
+    /// The user cancelled it.
     Cancelled,
-    /// Nothing: this desktop has no dialogs.
+    /// It never opened: this desktop has no dialogs.
     NoDialog,
 }
 
 impl Waiting {
-    /// One that has just been opened.
+    /// Wraps a dialog that has just been opened.
     pub fn new(wish: PathRequest, answer: Background<Option<PathBuf>>) -> Self {
         let since = Instant::now();
         Self {
@@ -96,7 +96,7 @@ impl Waiting {
         }
     }
 
-    /// What it has answered.
+    /// Returns the answer of the dialog, if there is one.
     pub fn answered(&mut self) -> Answered {
         match self.answer.take() {
             None => Answered::NotYet,

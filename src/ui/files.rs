@@ -1,5 +1,5 @@
-//! Opening and saving, from the wish to the file. A wish may have to wait for an answer; what
-//! follows it ([`Next`]) waits with it and is forgotten with it.
+//! Opening and saving, from the request to the file. A request may have to wait for an answer; what follows it
+//! ([`Next`]) waits with it and is dropped with it.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -19,27 +19,27 @@ use crate::editor::{Action, Editor, OwnFile, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
-/// How long a file that is read may hold the window up, so that small ones are there at once.
+/// Longest time for which reading a file may block the window, so that small files open at once.
 const AT_ONCE: Duration = Duration::from_millis(30);
-/// Files that "Open recent" remembers.
+/// Number of files that "Open recent" remembers.
 const RECENT: usize = 10;
 
-/// The wishes in progress.
+/// File operations in progress.
 pub struct Files {
     dialogs: Box<dyn Dialogs>,
     waiting: Option<Waiting>,
     prompt: Option<Prompt>,
-    /// Files that are being read, the first one first.
+    /// Files being read, first in first out.
     reading: VecDeque<Reading>,
     watch: Watch,
     /// Files that were opened or saved, newest first.
     pub recent: Vec<PathBuf>,
-    /// Where paths were chosen before.
+    /// The folders in which paths were chosen before.
     pub folders: Folders,
 }
 
 impl Files {
-    /// Nothing in progress.
+    /// Creates the state with no operation in progress.
     pub fn new(dialogs: Box<dyn Dialogs>, recent: Vec<PathBuf>, folders: Folders) -> Self {
         Self {
             dialogs,
@@ -52,13 +52,13 @@ impl Files {
         }
     }
 
-    /// Whether something is asked of the user that keys must not talk over.
+    /// Whether a question is open, during which keys must not trigger anything else.
     pub fn is_asking(&self) -> bool {
         self.prompt.is_some()
     }
 
-    /// Does `next`, after asking about unsaved changes. A flight that is still being recorded becomes keys, which
-    /// are some.
+    /// Does `next`, after asking about unsaved changes. A flight being recorded becomes keys first, which count as
+    /// unsaved changes.
     pub fn start(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         if !matches!(self.prompt, None | Some(Prompt::Saving(_))) {
             editor.notify("Answer the open question first".to_owned());
@@ -72,7 +72,7 @@ impl Files {
         self.go_on(ctx, editor, next)
     }
 
-    /// Quits, after asking whether that is meant, and what becomes of changes.
+    /// Asks whether to quit, or what to do with unsaved changes before quitting.
     pub fn ask_to_quit(&mut self, editor: &mut Editor) {
         editor.apply(Action::Time(Time::Stop));
         self.prompt = Some(if editor.is_dirty() {
@@ -82,7 +82,7 @@ impl Files {
         });
     }
 
-    /// Writes the document to its file, or asks for one.
+    /// Writes the document to its file, or asks for a path if it has none.
     pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
         self.save_then(ctx, editor, None)
     }
@@ -116,7 +116,7 @@ impl Files {
         self.waiting = Some(Waiting::new(wish, answer));
     }
 
-    /// Whether nothing waits for an answer, which would be about another document than was asked about.
+    /// Whether no question or dialog is open. While one is, no other document may replace the one it is about.
     fn is_free(&self) -> bool {
         self.prompt.is_none() && self.waiting.is_none()
     }
@@ -126,18 +126,18 @@ impl Files {
         self.reading.front()
     }
 
-    /// What is being read, in words, for the status line.
+    /// Describes the file that is being read, for the status line.
     pub fn describe_reading(&self) -> Option<String> {
         Some(self.reading()?.describe(self.is_free()))
     }
 
-    /// Takes answers and files up as they come.
+    /// Handles answers of dialogs and finished reads.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
-        // What is dragged is not to be pulled from under the hand.
+        // Nothing that is being dragged may be replaced in the middle of the drag.
         if ctx.input(|input| input.pointer.any_down()) || editor.is_in_gesture() {
             return None;
         }
-        // Nothing pulls the camera from a flight that is recorded either.
+        // Nor may a file that was read move the camera of a flight that is being recorded.
         let is_free = self.is_free() && !editor.is_recording();
         if !self.reading.is_empty() && is_free {
             ctx.request_repaint_after(AT_ONCE);
@@ -147,7 +147,7 @@ impl Files {
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::again(editor, changed));
         }
-        // One question after the other.
+        // One question at a time.
         let mut waiting = self.waiting.take_if(|_| self.prompt.is_none())?;
         match waiting.answered() {
             Answered::NotYet => self.waiting = Some(waiting),
@@ -156,7 +156,7 @@ impl Files {
                 let full = wish.ask.with_ending(path.clone());
                 let is_unasked = wish.ask.writes() && full != path && full.exists();
                 if is_unasked || !wish.ask.takes(&full) {
-                    // The desktop asked about another name than the one that would be replaced, or knows no endings.
+                    // The desktop did not ask about replacing the file of this name, or does not know the endings.
                     self.prompt(wish, &full, "Path");
                     return None;
                 }
@@ -177,7 +177,7 @@ impl Files {
         self.prompt = Some(Prompt::Path(wish, prompt));
     }
 
-    /// Draws what is being asked; exports that go on are told in words.
+    /// Shows the open question; `exports` describes exports that are still running.
     pub fn show(
         &mut self,
         ui: &Ui,
@@ -238,7 +238,7 @@ impl Files {
     ) -> Option<FileOutcome> {
         editor.begin(wish.ask.title());
         self.folders.note(&wish.ask, &path);
-        // The desktop's dialog leaves the window alive: what was done in it meanwhile was asked about by nobody.
+        // The desktop's dialog leaves the window usable: nobody asked about what was edited there in the meantime.
         let is_same = wish.document == editor.documents();
         let is_as_asked = is_same && wish.revision == editor.revision();
         match wish.ask {
@@ -256,7 +256,7 @@ impl Files {
             Ask::ExportJob => export_job(editor, &path),
             Ask::ExportPovray => export_povray(editor, &path),
             Ask::SaveScene if editor.would_lose(&path) => {
-                // As it is now it is seen, whatever the answer is.
+                // Marks the current state of the file as seen, whatever the answer will be.
                 self.watch.is_news(&path);
                 let (theirs, then) = (Document::load_stamped(&path), wish.then.clone());
                 if self.meet_theirs(editor, theirs, Some(wish)) {
@@ -274,7 +274,7 @@ impl Files {
         None
     }
 
-    /// Reads a file anew that another program has written; asks where the document was changed too.
+    /// Reloads a file that another program has written; asks if the document was changed too.
     fn look_outside(&mut self, editor: &mut Editor) {
         let Some(path) = editor.path().map(Path::to_owned) else {
             return;
@@ -290,7 +290,7 @@ impl Files {
         if !editor.is_changed_outside() {
             return forget_lost(editor);
         }
-        // What cannot be read may be half written: when more is, the next look tells, or the next save.
+        // An unreadable file may be half written; the next check, or the next save, will tell.
         let theirs = match Document::load_stamped(&path) {
             Ok(theirs) => theirs,
             Err(SceneError::Disk { .. }) => return self.watch.look_again(),
@@ -299,7 +299,7 @@ impl Files {
         self.meet_theirs(editor, Ok(theirs), None);
     }
 
-    /// Takes what another program has written, if nothing is lost by that; asks otherwise. Whether it was taken.
+    /// Takes what another program has written if that loses nothing, otherwise asks. Returns whether it was taken.
     fn meet_theirs(
         &mut self,
         editor: &mut Editor,
@@ -348,7 +348,7 @@ impl Files {
     }
 
     fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
-        // What was wrong with another file is over.
+        // A problem with another file no longer matters.
         editor.begin(Ask::OpenScene.title());
         if matches!(next, Next::New | Next::Example(_)) {
             editor.begin(OUTSIDE);
@@ -364,21 +364,21 @@ impl Files {
         None
     }
 
-    /// Opens a file; if it is refused, the document stays and the user is told why. A large one is read
-    /// while the window goes on.
+    /// Opens a file. If it is refused, the document stays and the user is told why. A large file is read while the
+    /// window stays usable.
     pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
-        // One scene takes the place of another; what becomes part of this one goes on, if this does.
+        // A new scene replaces one that is being read; meshes for this document go on if the document does.
         self.reading.retain(|reading| !reading.is_scene());
         self.reading.push_front(Reading::scene(editor, path));
         self.take_read(ctx, editor, AT_ONCE);
     }
 
-    /// The same before there is a window.
+    /// Opens a file before there is a window.
     pub fn open_now(&mut self, editor: &mut Editor, path: &Path) {
         self.opened(editor, path, Document::load_stamped(path));
     }
 
-    /// The parts of a mesh file become objects.
+    /// Imports the parts of a mesh file as objects.
     pub fn import_mesh(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
         self.reading.push_back(Reading::parts(editor, path));
         self.take_read(ctx, editor, AT_ONCE);

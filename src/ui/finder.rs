@@ -1,4 +1,4 @@
-//! Everything by its name: commands, things of the scene, settings.
+//! The finder: looks up commands, things of the scene and settings by name.
 
 use std::path::PathBuf;
 
@@ -22,34 +22,34 @@ use crate::scene::{Aspect, EXAMPLES};
 
 /// Width of the window in points.
 const WIDTH: f32 = 460.0;
-/// Height of the list where there are many, in points.
+/// Greatest height of the list, in points.
 const HEIGHT: f32 = 12.0 * ROW;
-/// How far below the upper border of the window it is, in points.
+/// Distance of the finder from the upper border of the window, in points.
 const TOP: f32 = 5.0 * ROW;
-/// Most finds that are listed.
+/// Most matches that are listed.
 const MOST: usize = 200;
 
-/// What is looked for.
+/// The state of the finder.
 #[derive(Debug, Default)]
 pub struct Finder {
-    /// Whether it is asked.
+    /// Whether the finder is shown.
     pub is_open: bool,
     text: String,
-    /// Which of the finds is meant.
+    /// Index of the marked match.
     meant: usize,
 }
 
-/// Something that has the name.
+/// A match.
 struct Find {
     name: String,
-    /// What stands to its right: its keys, what it is, or why it cannot be had.
+    /// Text on the right: its keys, its kind, or why it is not possible.
     aside: String,
     what: Found,
     is_enabled: bool,
 }
 
 impl Find {
-    /// What can be had.
+    /// Creates a match that is possible.
     fn of(name: String, aside: &str, what: Found) -> Self {
         Self {
             name,
@@ -72,7 +72,7 @@ impl Found {
     }
 }
 
-/// What menus and buttons call commands whose names here say more, in small letters.
+/// Other names of commands in menus and buttons, or other words for them, in lower case.
 const ALSO: [(Command, &str); 24] = [
     (Command::Ask(Ask::SaveScene), "save as"),
     (Command::Ask(Ask::SaveImage), "save image render"),
@@ -100,7 +100,7 @@ const ALSO: [(Command, &str); 24] = [
     (Command::Zoom(Zoom::Usual), "reset zoom"),
 ];
 
-/// What people call what can be added, beside its name here, in small letters.
+/// Other words for what can be added, in lower case.
 const ALSO_ADDED: [(&str, &str); 6] = [
     ("Add Sphere", "ball"),
     ("Add Plane", "floor ground wall"),
@@ -111,7 +111,7 @@ const ALSO_ADDED: [(&str, &str); 6] = [
 ];
 
 impl Finder {
-    /// Starts looking.
+    /// Opens the finder with an empty field.
     pub fn open(&mut self) {
         *self = Self {
             is_open: true,
@@ -119,7 +119,7 @@ impl Finder {
         };
     }
 
-    /// Shows the field and what it finds, while it is open.
+    /// Shows the field and its matches while the finder is open.
     pub fn show(
         &mut self,
         ctx: &Context,
@@ -131,7 +131,7 @@ impl Finder {
             return;
         }
         let frame = Frame::popup(&ctx.global_style()).inner_margin(GRID);
-        // What is typed into stays where it is, however much is found.
+        // The field stays in place, however many matches there are.
         let id = Id::unique("finder");
         let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, TOP));
         let modal = Modal::new(id).area(area).frame(frame);
@@ -141,7 +141,7 @@ impl Finder {
         });
         if shown.inner.is_some() || shown.should_close() {
             self.is_open = false;
-            // What is pasted next is not for its field.
+            // Otherwise, a later paste would go to the field.
             ctx.memory_mut(egui::Memory::stop_text_input);
         }
         if let Some(target) = shown.inner {
@@ -166,7 +166,7 @@ impl Finder {
         field.request_focus();
         if field.changed() {
             self.meant = 0;
-            // Of what is typed into an empty field, the first frame shows nothing.
+            // The first frame after typing into an empty field shows nothing.
             ui.request_repaint();
         }
         let finds = finds(ui, known, &self.text);
@@ -177,7 +177,7 @@ impl Finder {
         ui.add_space(GRID / 2.0);
         ScrollArea::vertical()
             .max_height(HEIGHT)
-            // Where few were found, there was room for few in the frame before.
+            // Without this, the list would stay as small as in the last frame, which may have had few matches.
             .min_scrolled_height(HEIGHT)
             .auto_shrink([false, true])
             .show(ui, |ui| {
@@ -204,7 +204,7 @@ impl Finder {
     }
 }
 
-/// Everything whose name has all the words, first what is possible, and of that what begins with them.
+/// Returns everything whose name contains all the words: possible things first, then those that begin with the text.
 fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Find> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -219,7 +219,7 @@ fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Fi
     finds.extend(settings(editor).filter_map(|(find, also)| {
         has(&format!("{} {} {also}", find.name, find.aside)).then_some(find)
     }));
-    // There may be very many.
+    // A scene may have very many things.
     let room = MOST.saturating_sub(finds.len());
     finds.extend(things(editor, has).take(room));
     finds.sort_by_key(|find| {
@@ -252,7 +252,7 @@ fn commands<'a>(
         })
 }
 
-/// What else it is called.
+/// Returns the other names of a match.
 fn also(find: &Find) -> &'static str {
     let commands = ALSO.iter().filter(|(command, _)| find.what.is(command));
     let additions = ALSO_ADDED.iter().filter(|(name, _)| find.name == *name);
@@ -262,12 +262,12 @@ fn also(find: &Find) -> &'static str {
     words.next().unwrap_or_default()
 }
 
-/// What the menu *Add* offers.
+/// Yields the entries of the menu *Add*.
 fn additions() -> impl Iterator<Item = Find> {
     Addition::all().map(|(addition, _, name)| Find::of(name, "", Found::Addition(addition)))
 }
 
-/// What is chosen in menus below the menus.
+/// Yields the entries of submenus, with their names and the text on the right.
 fn choices<'a>(
     editor: &'a Editor,
     recent: &'a [PathBuf],
@@ -325,7 +325,7 @@ fn choices<'a>(
     all.chain(recent)
 }
 
-/// The pack that what is selected wears.
+/// Returns the color pack of the selected object.
 fn worn_by_selected(editor: &Editor) -> Option<Item> {
     let (scene, item) = (editor.scene(), editor.selection().item()?);
     let worn = item
@@ -334,7 +334,7 @@ fn worn_by_selected(editor: &Editor) -> Option<Item> {
     scene.color_packs.get_index_of(worn).map(Item::pack)
 }
 
-/// What stands on top of the outliner, and the settings of the picture; each with what else it is called.
+/// Yields the entries at the top of the outliner and the settings of the picture, each with its other names.
 fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
     let mut names = vec![
         ("Camera".to_owned(), Selection::Camera, ""),

@@ -1,4 +1,4 @@
-//! The keys that fly the camera, and what the mouse does, as Help lists them.
+//! The keys that fly the camera, and the uses of the mouse, as Help lists them.
 
 use egui::Key;
 
@@ -7,11 +7,11 @@ use crate::editor::Motion;
 /// A key that flies the camera for as long as it is held.
 #[derive(Clone, Copy, Debug)]
 pub struct FlightKey {
-    /// The key; `None` is the control key by itself.
+    /// The key; `None` is the control key without another.
     pub key: Option<Key>,
-    /// Direction: 1 is the flying speed, or the turning speed.
+    /// Direction of flight: 1 stands for the flying speed or the turning speed.
     pub motion: Motion,
-    /// What Help says about it.
+    /// Description in Help.
     pub what: &'static str,
 }
 
@@ -24,7 +24,7 @@ const STILL: Motion = Motion {
     zoom: 0.0,
 };
 
-/// A table of keys: each with the direction in which it flies, and what Help says about it.
+/// Makes a table of keys, each with its direction of flight and its description in Help.
 macro_rules! flight {
     ($($key:expr, $field:ident: $by:expr, $what:expr;)*) => {
         &[$(FlightKey { key: $key, motion: Motion { $field: $by, ..STILL }, what: $what }),*]
@@ -45,7 +45,7 @@ pub const FLIGHT: &[FlightKey] = flight! {
     Some(Key::ArrowDown), pitch: -1.0, "Look down";
 };
 
-/// What the mouse does in the picture.
+/// Uses of the mouse and its modifiers, as listed in Help.
 pub const MOUSE: &[(&str, &str)] = &[
     ("Click", "Select; with Shift, select as well"),
     ("Alt, click", "Select what is behind"),
@@ -70,7 +70,7 @@ pub const MOUSE: &[(&str, &str)] = &[
 ];
 
 impl FlightKey {
-    /// The key in words.
+    /// The name of the key.
     pub fn name(&self) -> &'static str {
         self.key.map_or("Left Ctrl", Key::name)
     }

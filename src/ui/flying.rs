@@ -1,5 +1,4 @@
-//! From held keys and mouse moves to steps of a flight. Speeds are per second, whatever the frame
-//! rate.
+//! Turns held keys and mouse moves into steps of a flight. Speeds are per second, whatever the frame rate.
 
 use egui::{Context, Event, Key, PointerButton, Response, Ui, Vec2, vec2};
 
@@ -8,38 +7,38 @@ use crate::editor::Motion;
 use crate::scene::Scene;
 use crate::ui::commands::take_escape;
 
-/// Radians per second of an arrow key.
+/// Turning speed of an arrow key, in radians per second.
 const TURN_SPEED: f64 = 0.9;
-/// How fast a key brings an orthographic picture nearer: to half its window in a second.
+/// Rate at which a key enlarges an orthographic picture, as a logarithm per second: its height halves in a second.
 const ZOOM_SPEED: f64 = std::f64::consts::LN_2;
 /// Radians per point of mouse movement.
 const MOUSE_TURN: f64 = 0.004;
-/// Flying speed in scene extents per second: four seconds across.
+/// Flying speed in scene extents per second: it takes four seconds to cross the scene.
 const EXTENTS_PER_SECOND: f64 = 0.25;
 /// Flying speed in a scene without extent, in world units per second.
 const PLAIN_SPEED: f64 = 50.0;
-/// How much faster shift is.
+/// Factor on the speed while Shift is held.
 const FAST: f64 = 4.0;
-/// Points of the wheel that double the speed.
+/// Points of the wheel that double the flying speed.
 const WHEEL_DOUBLES: f64 = 100.0;
-/// The least and the most that the usual speed is multiplied by.
+/// Least factor on the flying speed.
 pub const SLOWEST: f64 = 0.01;
-/// See [`SLOWEST`].
+/// Greatest factor on the flying speed.
 pub const FASTEST: f64 = 100.0;
-/// Seconds for which a new speed is told.
+/// Seconds for which a new speed is shown.
 const TOLD: f64 = 1.2;
 /// Longest frame that counts, in seconds: after a stall the camera does not leap.
 const LONGEST_FRAME: f64 = 0.1;
-/// Seconds that the control key must be held by itself before it flies: it also starts shortcuts.
+/// Seconds for which the control key must be held alone before it flies down: it also begins shortcuts.
 const CTRL_DELAY: f64 = 0.4;
-/// Seconds without the wheel after which its next turn is a step of its own.
+/// Seconds without the wheel after which its next turn is an undo step of its own.
 const WHEEL_QUIET: f64 = 0.4;
 
-/// What the flight keys need to remember.
+/// The state of flying between frames.
 #[derive(Debug, Default)]
 pub struct Flying {
     ctrl: Ctrl,
-    /// Keys that were pressed for a shortcut and are held still: they fly when they are pressed anew.
+    /// Keys pressed for a shortcut and still held: they fly only after being pressed again.
     taken: Vec<Key>,
     /// Whether keys moved the camera in the last frame.
     keys_fly: bool,
@@ -50,38 +49,38 @@ pub struct Flying {
     look: Look,
 }
 
-/// What the secondary button is held for.
+/// The state of the secondary mouse button.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Look {
-    /// It is not, or for something else.
+    /// It is not held, or not for looking around.
     #[default]
     Not,
-    /// Looking around, from this frame on.
+    /// Looking around begins in this frame.
     Begins,
     /// Looking around.
     Around,
-    /// Nothing any more: Escape took it back.
+    /// Looking around was cancelled with Escape; the button is still held.
     GivenUp,
 }
 
-/// Whether the picture is looked around in.
+/// Returns whether the secondary button is dragging over the picture.
 fn is_looked_around_in(picture: &Response) -> bool {
     picture.dragged_by(PointerButton::Secondary)
 }
 
-/// What the control key is being held for.
+/// The use of the control key that is being held.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Ctrl {
     /// It is not held.
     #[default]
     Up,
-    /// Held by itself since this time: it may yet become either.
+    /// Held alone since this time: it may become a flight key or part of a shortcut.
     Waiting(f64),
-    /// Flying down along with other keys.
+    /// Flying down together with other keys.
     Flying,
-    /// Flying down by itself: what is pressed next is a shortcut's.
+    /// Flying down alone: the next key pressed belongs to a shortcut.
     FlyingAlone,
-    /// A shortcut.
+    /// Part of a shortcut.
     Shortcut,
 }
 
@@ -92,9 +91,9 @@ impl Ctrl {
 }
 
 impl Flying {
-    /// The step of this frame, if the camera moves. Keys count only while `keys_are_free`, the
-    /// mouse only over `picture`, which is `None` where the picture is not to be flown through.
-    /// To be called in every frame, so that a key that is let go elsewhere is not missed.
+    /// Returns the motion of this frame, if the camera moves. Keys count only while `keys_are_free`, the mouse only
+    /// over `picture`, which is `None` if the picture cannot be flown through. Must be called in every frame, so that a
+    /// key released elsewhere is not missed.
     pub fn step(
         &mut self,
         ui: &Ui,
@@ -106,7 +105,7 @@ impl Flying {
         let held = if let Some(picture) = picture.filter(|_| keys_are_free) {
             self.held(ui, picture)
         } else {
-            // A key that was held for something else flies only when it is pressed anew.
+            // A key that is held for something else flies only after being pressed again.
             let is_held = ui.input(|input| input.modifiers.ctrl);
             self.ctrl = if is_held { Ctrl::Shortcut } else { Ctrl::Up };
             Motion::default()
@@ -142,24 +141,24 @@ impl Flying {
         (motion != Motion::default()).then_some(motion)
     }
 
-    /// Whether looking around begins in this frame: it is a step of its own, also in flight.
+    /// Whether looking around begins in this frame: it is an undo step of its own, even during a flight.
     pub fn begins_to_look(&self) -> bool {
         self.look == Look::Begins
     }
 
-    /// Whether Escape takes back how the camera was moved since looking around began; it means nothing else then.
+    /// Consumes Escape while looking around, and returns whether it undoes the camera's motion since that began.
     pub fn gives_up(&mut self, ui: &Ui) -> bool {
         let gives_up = matches!(self.look, Look::Begins | Look::Around) && take_escape(ui);
         if gives_up {
             self.look = Look::GivenUp;
-            // What flew meanwhile flies again when it is pressed anew.
+            // Keys that flew in the meantime fly only after being pressed again.
             ui.input(|input| self.taken.extend(&input.keys_down));
         }
         gives_up
     }
 
-    /// Points that the wheel turned over the picture. While the camera flies or looks around, the wheel
-    /// changes its speed instead: that is `factor` times the usual one.
+    /// Returns the points that the wheel turned over the picture. While the camera flies or looks around, the wheel
+    /// changes `factor`, the factor on the flying speed, instead.
     pub fn wheel(&mut self, ui: &Ui, picture: &Response, factor: &mut f64) -> f64 {
         let is_down = ui.input(|input| input.pointer.secondary_down());
         let looks = is_down && picture.is_pointer_button_down_on();
@@ -171,7 +170,7 @@ impl Flying {
             return 0.0;
         }
         let now = ui.input(|input| input.time);
-        // What is left of the turn belongs to it.
+        // The rest of a turn that changed the speed must not zoom.
         let was_changed = self.changed_at.is_some_and(|at| now - at < WHEEL_QUIET);
         if looks || self.keys_fly {
             *factor = (*factor * (wheel / WHEEL_DOUBLES).exp2()).clamp(SLOWEST, FASTEST);
@@ -185,28 +184,28 @@ impl Flying {
         wheel
     }
 
-    /// Whether the speed was changed just now.
+    /// Whether the speed was changed a moment ago and is to be shown.
     pub fn is_speed_told(&mut self, ctx: &Context) -> bool {
         lasts(ctx, &mut self.changed_at, TOLD)
     }
 
-    /// Whether keys move the camera: they are then no shortcuts.
+    /// Whether keys move the camera, in which case they are not shortcuts.
     pub fn is_flying(&self) -> bool {
         self.keys_fly && self.ctrl != Ctrl::FlyingAlone
     }
 
-    /// Whether the flight goes on, as one step in the history.
+    /// Whether a flight or a turn of the wheel goes on, which is one undo step.
     pub fn is_gesture(&mut self, ctx: &Context) -> bool {
         let is_turned = lasts(ctx, &mut self.wheel_at, WHEEL_QUIET);
         let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
         is_turned || self.ctrl.is_flying() || any_down
     }
 
-    /// Notes which keys are held for shortcuts: fast hands let the control key go before the other one.
+    /// Notes keys held for shortcuts: the control key is often released before the other one.
     fn take_keys(&mut self, ui: &Ui) {
         let may_take = self.ctrl != Ctrl::Flying && !self.is_flying();
         ui.input(|input| {
-            // Of what was pressed for commands, only what came from the desktop knows.
+            // Only the raw events still contain the keys that commands have consumed.
             let pressed = input.raw.events.iter().filter_map(|event| match event {
                 Event::Key {
                     key,
@@ -229,7 +228,7 @@ impl Flying {
             _ if !ctrl => Ctrl::Up,
             Ctrl::Up if self.keys_fly => Ctrl::Flying,
             Ctrl::Up | Ctrl::Waiting(_) | Ctrl::FlyingAlone if any_key => Ctrl::Shortcut,
-            // Elsewhere it is held for a click that comes later.
+            // Outside the picture, it is held for a click that comes later.
             Ctrl::Up | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Up => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
@@ -252,7 +251,7 @@ impl Flying {
     }
 }
 
-/// Keys that mean something only with others.
+/// Keys that modify others.
 const MODIFIERS: [Key; 8] = [
     Key::ControlLeft,
     Key::ControlRight,
@@ -264,12 +263,12 @@ const MODIFIERS: [Key; 8] = [
     Key::SuperRight,
 ];
 
-/// Whether the control key is held with something else: a key, a button, the wheel, or what the desktop
-/// makes of it.
+/// Returns whether the control key is held together with something else: a key, a button, the wheel, or an event that
+/// the desktop made of a shortcut.
 fn is_held_for_more(input: &egui::InputState) -> bool {
     let is_from_desktop =
         |event: &Event| matches!(event, Event::Copy | Event::Cut | Event::Paste(_));
-    // Desktops tell of the keys of modifiers as well.
+    // Desktops report modifier keys as keys too.
     let is_other = |key: &Key| !MODIFIERS.contains(key);
     input.keys_down.iter().any(is_other)
         || input.pointer.any_down()
@@ -277,14 +276,14 @@ fn is_held_for_more(input: &egui::InputState) -> bool {
         || input.events.iter().any(is_from_desktop)
 }
 
-/// Whether the key is held; the control key is not asked here, it has two meanings.
+/// Returns whether the key is held. The control key, which has two meanings, is handled elsewhere.
 fn is_down(ctx: &Context, flight: &FlightKey) -> bool {
     flight
         .key
         .is_some_and(|key| ctx.input(|input| input.key_down(key)))
 }
 
-/// Flying speed in world units per second: of what is to be seen, however far away its lights are.
+/// Returns the flying speed in world units per second, from the extent of the objects, however far away lights are.
 fn speed(scene: &Scene) -> f64 {
     let extent = scene
         .surroundings()
@@ -296,15 +295,15 @@ fn speed(scene: &Scene) -> f64 {
     }
 }
 
-/// How far the pointer was dragged over the picture, in points. At the edge of the screen it stays, and the mouse goes on;
-/// a pen, or a mouse of another machine, has no motion but the pointer's.
+/// Returns how far the pointer was dragged over the picture, in points. At the edge of the screen the pointer stops,
+/// and only the mouse's motion goes on; a pen, or the mouse of another machine, moves only the pointer.
 pub fn drag_of(picture: &Response) -> Vec2 {
     let (moved, motion) = (picture.drag_delta(), picture.drag_motion());
     let along = |moved: f32, motion: f32| if moved == 0.0 { motion } else { moved };
     vec2(along(moved.x, motion.x), along(moved.y, motion.y))
 }
 
-/// Whether something happened less than so many seconds ago; when that is over, there is a frame.
+/// Returns whether something happened less than `seconds` ago; if so, requests a frame for when that is over.
 fn lasts(ctx: &Context, at: &mut Option<f64>, seconds: f64) -> bool {
     let now = ctx.input(|input| input.time);
     *at = at.filter(|at| now - at < seconds);

@@ -1,4 +1,4 @@
-//! Where paths are asked for first: where the last one of the kind was.
+//! The folder in which a path is first asked for: where the last path of that kind was.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::editor::Editor;
 pub struct Folders(BTreeMap<String, PathBuf>);
 
 impl Folders {
-    /// A path was chosen.
+    /// Remembers the folder of a path that was chosen.
     pub fn note(&mut self, ask: &Ask, path: &Path) {
         let folder = match ask {
             Ask::ExportFolder => Some(path),
@@ -25,8 +25,8 @@ impl Folders {
         }
     }
 
-    /// What to begin with: the folder of the last path of the kind, or that of the document; for what is
-    /// written, under the document's name.
+    /// Returns the path to start from: in the folder of the last path of that kind, or that of the document; for files
+    /// to be written, with the document's name.
     pub fn suggest(&self, editor: &Editor, ask: &Ask) -> PathBuf {
         let own = editor.path().and_then(Path::parent);
         let own = own.filter(|folder| !folder.as_os_str().is_empty());
@@ -34,7 +34,7 @@ impl Folders {
         let last = last.filter(|folder| folder.is_dir());
         let here = std::env::current_dir().unwrap_or_default();
         let folder = match ask {
-            // A scene is saved beside what it was.
+            // A scene is saved next to its own file, if it has one.
             Ask::SaveScene => own.or(last),
             _ => last.or(own),
         };
@@ -77,7 +77,7 @@ mod tests {
         folders.note(&Ask::SaveImage, &folder.path().join("a.png"));
         let image = folders.suggest(&editor, &Ask::SaveImage);
         assert_eq!(image.parent(), Some(folder.path()));
-        // One that is gone is none.
+        // A folder that no longer exists is not suggested.
         let gone = folder.path().join("gone/a.png");
         folders.note(&Ask::SaveImage, &gone);
         let image = folders.suggest(&editor, &Ask::SaveImage);

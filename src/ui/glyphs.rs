@@ -1,20 +1,20 @@
-//! Signs that are written and no installed font has.
+//! Glyphs that the window needs and no installed font has.
 
 use egui::epaint::text::{GlyphBitmap, GlyphRasterizer, RasterizedGlyph};
 use egui::{Color32, ColorImage, Context, vec2};
 
-/// What the picker of colours writes on the button that copies a colour.
+/// The character that the color picker writes on the button that copies a colour.
 const COPY: &str = "📋";
-/// Sides of the two sheets of paper, and how far they are apart, in font sizes.
+/// Width and height of each of the two sheets of paper, and their distance, in font sizes.
 const SHEET: (f32, f32) = (0.55, 0.7);
 const APART: f32 = 0.18;
 
-/// The minus of exponents.
+/// The minus sign of exponents.
 const RAISED_MINUS: &str = "⁻";
-/// Its width with the room around it, its height above the line and its thickness, in font sizes.
+/// Its advance width, its height above the baseline and its thickness, in font sizes.
 const BAR: (f32, f32, f32) = (0.36, 0.56, 0.06);
 
-/// Draws the signs wherever they are written.
+/// Registers rasterizers for these glyphs.
 pub fn install(ctx: &Context) {
     ctx.add_glyph_rasterizer(GlyphRasterizer::new("glint raised minus", |request| {
         (request.cluster == RAISED_MINUS).then(|| raised_minus(request.font_size_px))
@@ -38,7 +38,7 @@ fn raised_minus(size: f32) -> RasterizedGlyph {
     }
 }
 
-/// Two sheets of paper, one before the other.
+/// Draws two sheets of paper, one in front of the other.
 fn two_sheets(size: f32) -> RasterizedGlyph {
     let pixels = |share: f32| (share * size).round().max(1.0) as usize;
     let (width, height, apart) = (pixels(SHEET.0), pixels(SHEET.1), pixels(APART));
@@ -49,7 +49,7 @@ fn two_sheets(size: f32) -> RasterizedGlyph {
             for column in 0..width {
                 let is_edge = row == 0 || column == 0 || row + 1 == height || column + 1 == width;
                 let pixel = &mut image.pixels[(top + row) * whole[0] + left + column];
-                // The sheet in front hides what is behind it.
+                // The sheet in front is drawn last and covers the other one.
                 *pixel = if is_edge {
                     Color32::WHITE
                 } else {

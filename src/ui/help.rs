@@ -6,20 +6,20 @@ use super::commands::{SHORTCUTS, name_of};
 use super::flight_keys::{FLIGHT, MOUSE};
 use super::theme::{GRID, palette};
 
-/// Room that all of it takes, in points.
+/// Size in which all lists are visible, in points.
 const SIZE: Vec2 = vec2(1180.0, 640.0);
-/// Width of what is said about a key, at most, in points.
+/// Greatest width of a description, in points.
 const WIDEST: f32 = 225.0;
-/// Width in which two columns have room side by side, in points.
+/// Least window width for two columns, in points.
 const TWO_COLUMNS: f32 = 745.0;
-/// Width in which they have room as wide as that.
+/// Least window width for two columns of full width.
 const ROOMY: f32 = 845.0;
-/// Width of what is said in narrower ones.
+/// Width of a description in narrower columns.
 const SLIM: f32 = 170.0;
 
-/// Shows the list while `open`.
+/// Shows the list of shortcuts while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
-    // All of it in a window of usual size; in a small one, what has room.
+    // In a small window, the list gets as much room as there is and scrolls.
     let room = ctx.content_rect().size() - vec2(6.0, 12.0) * GRID;
     Window::new("Shortcuts")
         .open(open)
@@ -31,7 +31,7 @@ pub fn show(ctx: &Context, open: &mut bool) {
             ScrollArea::both()
                 .max_width(room.x)
                 .max_height(room.y)
-                // The bar is at the edge of the window.
+                // Keeps the scroll bar at the edge of the window.
                 .auto_shrink([false, true])
                 .show(ui, |ui| {
                     lists(ui, room.x);
@@ -39,7 +39,7 @@ pub fn show(ctx: &Context, open: &mut bool) {
         });
 }
 
-/// All lists, in as many columns as have room: where it is wide, everything is seen without scrolling.
+/// Shows all lists, in as many columns as fit: in a wide window, everything is visible without scrolling.
 fn lists(ui: &mut Ui, width: f32) {
     let commands = SHORTCUTS.iter().map(|shortcut| {
         let keys: Vec<String> = shortcut.keys.iter().map(|key| name_of(ui, *key)).collect();
@@ -53,7 +53,7 @@ fn lists(ui: &mut Ui, width: f32) {
         return;
     }
     let is_wide = width >= SIZE.x;
-    // Two columns are as long as each other.
+    // The columns are to be about equally long.
     let first = if is_wide {
         commands.len().div_ceil(2)
     } else {

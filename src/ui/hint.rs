@@ -1,13 +1,13 @@
-//! Tooltips: never while a button is down, when they would cover what is being changed.
+//! Tooltips. They are never shown while a button is down, when they would cover what is being changed.
 
 use egui::{Rect, RectAlign, Response, Tooltip, Ui};
 
-/// Says what a widget does while the pointer rests on it.
+/// Explains a widget while the pointer rests on it.
 pub trait Hinted {
-    /// Below the widget.
+    /// Shows a tooltip below the widget.
     fn hint(self, text: impl Into<String>) -> Self;
 
-    /// Beside the panel that the widget is in, whose numbers stay in sight.
+    /// Shows a tooltip next to the panel that contains the widget, so that the panel's numbers stay visible.
     fn hint_beside(&self, ui: &Ui, text: &str);
 }
 

@@ -1,4 +1,4 @@
-//! How bright the picture is, in a corner of it.
+//! The histogram of the picture, in a corner of it.
 
 use std::sync::Arc;
 
@@ -12,10 +12,10 @@ use crate::worker::Frame;
 
 /// Width and height of the graph in points.
 const SIZE: (f32, f32) = (192.0, 64.0);
-/// Room for the words below.
+/// Height of the text below, in points.
 const WORDS: f32 = 18.0;
 
-/// The counts of the last finished picture.
+/// The histogram of the last finished picture.
 #[derive(Default)]
 pub struct Levels {
     of: Option<Arc<Image>>,
@@ -23,7 +23,7 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Counts a finished picture, if it is another one than before. The share that clips.
+    /// Counts a finished picture, unless it is the same as before. Returns the share of its pixels that clip.
     pub fn update(&mut self, frame: &Frame, scene: &Scene) -> Option<f64> {
         let is_same = |of: &Arc<Image>| Arc::ptr_eq(of, &frame.image);
         if frame.step != 1 || self.of.as_ref().is_some_and(is_same) {
@@ -36,7 +36,7 @@ impl Levels {
         Some(clipped)
     }
 
-    /// Draws the counts over the lower left corner of the picture.
+    /// Draws the histogram over the lower left corner of the picture.
     pub fn show(&self, ui: &Ui, picture: Rect) {
         let Some(histogram) = &self.counted else {
             return;
@@ -50,7 +50,7 @@ impl Levels {
         let fill = colors.panel.gamma_multiply(0.9);
         painter.rect(frame, 4, fill, line, StrokeKind::Inside);
         let graph = Rect::from_min_size(frame.min + vec2(GRID, GRID), SIZE.into());
-        // Red, green and blue are those of the axes.
+        // The channels have the colours of the axes.
         for (counts, color) in histogram.counts.iter().zip(colors.axes) {
             painter.extend(curve(counts, histogram.highest(), graph, color));
         }
@@ -61,7 +61,7 @@ impl Levels {
     }
 }
 
-/// One line for a channel; the root of the counts, so that few are seen beside many.
+/// Returns the curve of a channel: the square root of the counts, so that small counts are visible next to large ones.
 fn curve(counts: &[u32; 256], highest: u32, graph: Rect, color: Color32) -> Vec<Shape> {
     let height = |count: u32| {
         (f64::from(count) / f64::from(highest.max(1)))

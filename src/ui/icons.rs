@@ -38,7 +38,7 @@ pub fn text(icon: MaterialIcon) -> RichText {
     icon.rich_text().size(ICON)
 }
 
-/// A button that is only a symbol; `name` is what screen readers and the tooltip say.
+/// A button that is only a symbol. `name` is its accessible name and its tooltip.
 pub fn button(ui: &mut Ui, icon: MaterialIcon, name: &str) -> Response {
     ui.scope(|ui| {
         ui.spacing_mut().button_padding.x = GRID / 2.0;

@@ -1,4 +1,4 @@
-//! What other programs make and read: meshes, paths of the camera, jobs for farms, scenes for POV-Ray.
+//! Files of other programs: meshes, camera paths, jobs for render farms, scenes for POV-Ray.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,10 @@ use crate::mesh::{MeshFile, Part};
 use crate::scene::{Animation, Camera, MAX_BYTES, Scene, around, check, read_text};
 use crate::words::{counted, for_shell};
 
-/// How many times as large as a scene, or as small, a mesh is whose size is told.
+/// Factor between the sizes of a mesh and of the scene from which on the size is reported.
 const ODD: f64 = 20.0;
 
-/// The keys of a file take the place of the camera's.
+/// Replaces the camera's keys by those of a file.
 pub fn import_path(editor: &mut Editor, path: &Path) {
     let text = match read_text(path) {
         Ok(text) => text,
@@ -65,7 +65,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The keys of the camera, as CSV or RON by the ending of the file, which [`Ask::takes`] has looked at.
+/// Writes the camera's keys, as CSV or RON by the ending of the file, which [`Ask::takes`] has checked.
 pub fn export_path(editor: &mut Editor, path: &Path) {
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
@@ -77,7 +77,7 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     let has_ways = keys
         .iter()
         .any(|key| (key.interpolation, key.easing) != plain);
-    // Who takes it for another program may know; who takes it for a copy does not.
+    // Someone who exports for another program may know this; someone who takes the file for a copy does not.
     let lost = if is_table(path) && has_ways {
         " without the ways and paces between keys: a RON file keeps them"
     } else {
@@ -89,7 +89,7 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The scene as the window shows it, at the playhead's time and through its camera, in POV-Ray's language.
+/// Writes the scene as the window shows it, at the playhead's time and through its camera, in POV-Ray's language.
 pub fn export_povray(editor: &mut Editor, path: &Path) {
     match write_text(path, &povray_text(editor.shown())) {
         Ok(()) => editor.notify(format!("Saved {}", path.display())),
@@ -97,7 +97,7 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// The template of a job, and the scene as it is now beside it.
+/// Writes the job template, and next to it the scene in its current state, unless its own saved file is there.
 pub fn export_job(editor: &mut Editor, path: &Path) {
     match write(editor, path) {
         Ok(JobFiles {
@@ -139,7 +139,7 @@ fn write(editor: &Editor, path: &Path) -> Result<JobFiles, Box<dyn Error>> {
     Ok(write_job(&editor.document(), own, &sequence, path)?)
 }
 
-/// Refuses to make frames of a scene with a mesh that is not there: nobody would miss it in a thousand files.
+/// Refuses to make frames of a scene with a mesh that could not be read: in a thousand files, nobody would notice.
 pub fn check_whole(scene: &Scene) -> Result<(), String> {
     let problem = scene.mesh_problems().next();
     problem.map_or(Ok(()), |(index, why)| {
@@ -154,7 +154,7 @@ fn is_table(path: &Path) -> bool {
     has_ending(path, "csv")
 }
 
-/// The camera that sees all of a box; `None` if it would be too far away.
+/// Returns the camera that sees all of a box; `None` if it would be too far away.
 fn camera_around(scene: &Scene, bounds: (DVec3, DVec3)) -> Option<Camera> {
     let camera = scene.camera.around(scene.render.aspect_ratio(), bounds);
     let alone = Scene {
@@ -164,7 +164,7 @@ fn camera_around(scene: &Scene, bounds: (DVec3, DVec3)) -> Option<Camera> {
     check(&alone).is_ok().then_some(camera)
 }
 
-/// The parts of a mesh file become objects.
+/// Adds the parts of a mesh file as objects.
 pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let MeshFile { parts, notes } = file;
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
@@ -181,7 +181,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         );
         return editor.report_error_in(Ask::ImportMesh.title(), why);
     }
-    // What is all that there is to see is brought into the picture.
+    // If nothing else is in the scene, the camera moves to show the parts.
     let seen = if first == 0 { &parts[..] } else { &[] };
     let bounds = around(seen.iter().filter_map(|part| part.triangles.bounds()));
     let odd = odd_size(editor.shown(), &parts);
@@ -189,7 +189,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let label = import.label(editor.scene());
     let mut edits = vec![import];
     if last - first > 1 {
-        // They belong together.
+        // The parts of one file form a group.
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let group = free_group_name(editor.scene(), stem.trim());
         edits.push(Edit::Group((first..last).collect(), group));
@@ -213,7 +213,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     editor.notify_of_step(format!("{count} from {path}{how}{odd}{notes}"));
 }
 
-/// How large the parts of a mesh are, where that is far from what the scene is: mostly, they were in other units.
+/// Reports the size of a mesh that is far from that of the scene: mostly, it was in other units.
 fn odd_size(scene: &Scene, parts: &[Part]) -> String {
     let size = |(low, high): (DVec3, DVec3)| (high - low).max_element();
     let parts = around(parts.iter().filter_map(|part| part.triangles.bounds()));

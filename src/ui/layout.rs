@@ -1,4 +1,4 @@
-//! What of the window is shown.
+//! Which parts of the window are shown.
 
 use std::ops::RangeInclusive;
 
@@ -7,11 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::Aspect;
 
-/// Factors by which letters and buttons can be other than usual: smaller ones nobody can read, and larger ones leave no
-/// room to the picture.
+/// Factors on the size of letters and buttons: smaller ones are unreadable, larger ones leave no room for the picture.
 const ZOOMS: RangeInclusive<f32> = 0.6..=3.0;
 
-/// What of the window can be shown or hidden.
+/// Parts of the window that can be shown or hidden, and settings of the view.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a tick in the menu")]
@@ -24,16 +23,16 @@ pub struct Layout {
     pub flight: bool,
     /// Whether the shot is shown in a corner of the view.
     pub shot: bool,
-    /// Whether it is shown how bright the picture is.
+    /// Whether the histogram of the picture is shown.
     pub histogram: bool,
     /// The panel below the picture.
     pub below: Below,
     /// Whether the picture is shown without any panel.
     #[serde(skip)]
     pub is_alone: bool,
-    /// How many times faster than usual the camera flies.
+    /// Factor on the usual speed of flying.
     pub fly_speed: f64,
-    /// What of the light the live view shows.
+    /// The part of the light that the live view shows.
     #[serde(skip)]
     pub aspect: Aspect,
 }
@@ -45,7 +44,7 @@ pub enum WindowPart {
     Outliner,
     /// The panel on the right.
     Inspector,
-    /// How bright the picture is.
+    /// The histogram of the picture.
     Histogram,
     /// The flight of the camera in the view.
     Flight,
@@ -57,7 +56,7 @@ impl WindowPart {
     /// The panels, with their names.
     pub const PANELS: [(Self, &'static str); 2] =
         [(Self::Outliner, "Outliner"), (Self::Inspector, "Inspector")];
-    /// What is shown over the picture, with its names.
+    /// The parts shown over the picture, with their names.
     pub const OVER_PICTURE: [(Self, &'static str); 3] = [
         (Self::Histogram, "Histogram"),
         (Self::Flight, "Flight in the view"),
@@ -66,12 +65,12 @@ impl WindowPart {
 }
 
 impl Layout {
-    /// Shows the outliner, beside the picture if that was alone.
+    /// Shows the outliner, and the panels again if the picture was alone.
     pub fn show_outliner(&mut self) {
         (self.outliner, self.is_alone) = (true, false);
     }
 
-    /// Whether a part of the window is shown.
+    /// Returns the flag whether a part of the window is shown.
     pub fn part(&mut self, part: WindowPart) -> &mut bool {
         match part {
             WindowPart::Outliner => &mut self.outliner,
@@ -83,7 +82,7 @@ impl Layout {
     }
 }
 
-/// What is shown below the picture: there is room for one.
+/// The panel below the picture: there is room for only one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Below {
     /// Nothing but the status line.
@@ -111,7 +110,7 @@ impl Default for Layout {
     }
 }
 
-/// Letters and buttons stay of a size that one can use.
+/// Keeps letters and buttons at a usable size.
 pub fn keep_readable(ctx: &Context) {
     let zoom = ctx.zoom_factor();
     let kept = zoom.clamp(*ZOOMS.start(), *ZOOMS.end());

@@ -1,4 +1,4 @@
-//! What the colours of a view mean, in a corner of the picture: the scale of *Rays per pixel*, and the others in words.
+//! The meaning of a view's colours, in a corner of the picture: a scale for *Rays per pixel*, a text for the others.
 
 use egui::{
     Align2, Color32, Mesh, Painter, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, pos2,
@@ -10,14 +10,14 @@ use crate::trace::heat;
 
 /// Width and height of the strip in points.
 const STRIP: (f32, f32) = (192.0, 10.0);
-/// Room for the words below.
+/// Height of the text below, in points.
 const WORDS: f32 = 16.0;
-/// How many columns it is drawn of.
+/// Number of columns that the strip is drawn with.
 const COLUMNS: u32 = 96;
-/// The counts that have a mark, from one end of the strip to the other.
+/// Counts that are labelled, from one end of the strip to the other.
 const MARKS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
-/// Draws what is said of a view over the lower right corner of the picture.
+/// Draws the description of a view over the lower right corner of the picture.
 pub fn show_words(ui: &Ui, picture: Rect, words: &str) {
     let font = TextStyle::Small.resolve(ui.style());
     let widest = (picture.width() - 4.0 * GRID).max(0.0);
@@ -27,7 +27,7 @@ pub fn show_words(ui: &Ui, picture: Rect, words: &str) {
     painter.galley(frame.min + vec2(GRID, GRID / 2.0), words, color);
 }
 
-/// A frame of this size in the lower right corner, and what draws in it.
+/// Draws a frame of this size in the lower right corner; returns it, and a painter for its contents.
 fn frame(ui: &Ui, picture: Rect, size: Vec2) -> (Painter, Rect) {
     let colors = palette(ui.ctx());
     let corner = picture.right_bottom() - size - vec2(GRID, GRID);
@@ -60,7 +60,7 @@ pub fn show(ui: &Ui, picture: Rect) {
     }
 }
 
-/// The strip: equal factors are equal widths, as in the picture.
+/// Returns the strip, with a logarithmic scale like that of the picture.
 fn colored(strip: Rect) -> Shape {
     let mut mesh = Mesh::default();
     let [first, .., last] = MARKS;

@@ -1,21 +1,21 @@
-//! The still picture, larger than the window: the wheel enlarges it by whole factors, a drag moves it.
+//! Magnification of the still picture: the wheel enlarges it by whole factors, a drag moves it.
 
 use egui::{Pos2, Rect, Vec2, vec2};
 
-/// Largest side of a pixel, in pixels of the screen.
+/// Greatest side of a picture pixel, in screen pixels.
 const LARGEST: u32 = 32;
 
-/// How a still picture is looked at.
+/// Magnification and position of a still picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Magnifier {
-    /// Pixels of the screen for each of the picture; 0 shows all of it.
+    /// Screen pixels per picture pixel; 0 shows the whole picture.
     pub factor: u32,
-    /// What is in the middle of the window, in shares of the picture from its middle.
+    /// The point of the picture in the middle of the window, in shares of the picture from its middle.
     middle: Vec2,
 }
 
 impl Magnifier {
-    /// Where the picture is that is seen as a whole in `fitting`, and is so many pixels large.
+    /// Returns where to draw a picture of `size` pixels, which as a whole would fill `fitting`.
     pub fn place(&self, fitting: Rect, size: (usize, usize), pixels_per_point: f32) -> Rect {
         if self.factor == 0 {
             return fitting;
@@ -27,7 +27,7 @@ impl Magnifier {
         Rect::from_min_size((corner.round() / pixels_per_point).to_pos2(), size)
     }
 
-    /// Twice as large, or half; what is at `at` stays there. Smaller than the window, all is seen.
+    /// Doubles or halves the magnification around `at`. When it shrinks to fit the window, the whole picture is shown.
     pub fn turn(
         &mut self,
         up: bool,
@@ -60,7 +60,7 @@ impl Magnifier {
         self.pan(moved, after);
     }
 
-    /// Moves the picture, which is at `place`.
+    /// Moves the picture, which is drawn to `place`.
     pub fn pan(&mut self, by: Vec2, place: Rect) {
         if self.factor > 0 {
             let half = Vec2::splat(0.5);

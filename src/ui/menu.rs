@@ -1,4 +1,4 @@
-//! The bar on top: menus, and the switches that are used all the time.
+//! The bar at the top: the menus, and the most frequently used switches.
 
 use std::path::PathBuf;
 
@@ -292,7 +292,7 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
 }
 
-/// From right to left: lights, projection, picture, live view.
+/// Shows the switches from right to left: lights, projection, picture, live view.
 fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let scene = editor.scene();
     let markers = scene.light_visualization;

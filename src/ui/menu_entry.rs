@@ -1,4 +1,4 @@
-//! An entry of a menu, and those that several menus have.
+//! A menu entry, and the entries that several menus share.
 
 use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
@@ -9,7 +9,7 @@ use super::requests::UiRequests;
 use crate::editor::Editor;
 use crate::words::capitalised;
 
-/// What can be done to the selected item.
+/// The commands for selected items, with their names.
 pub const ITEM_COMMANDS: [(&str, Command); 14] = [
     ("Cut", Command::Cut),
     ("Copy", Command::Copy),
@@ -27,12 +27,12 @@ pub const ITEM_COMMANDS: [(&str, Command); 14] = [
     ("Delete", Command::Delete),
 ];
 
-/// A menu entry with its key. Whether it was chosen.
+/// Adds a menu entry with its key. Returns whether it was chosen.
 pub fn entry(ui: &mut Ui, text: &str, command: Command, out: &mut UiRequests) -> bool {
     add(ui, (text, None), command, out)
 }
 
-/// The same where the command would do something now.
+/// Adds a menu entry that is enabled only if the command would do something now.
 pub fn offer(ui: &mut Ui, editor: &Editor, text: &str, command: Command, out: &mut UiRequests) {
     let obstacle = obstacle(&command, editor);
     add(ui, (text, obstacle), command, out);
@@ -59,7 +59,7 @@ fn add(
     is_chosen
 }
 
-/// An entry that is on or off: a tick before it says that it is on.
+/// Adds a menu entry that can be on or off, with a tick in front if it is on.
 pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Option<&Command>) -> Response {
     let key = command.and_then(|command| key_of(ui, command));
     let tick = icons::text(icons::CHECK);

@@ -1,6 +1,6 @@
-//! The window: egui panels that read the editor's state and push actions. One file or folder
-//! for each panel; `theme.rs` has every colour and spacing, `commands.rs` every key but those that fly
-//! (`flight_keys.rs`) and walk through lists.
+//! The window: egui panels that read the editor's state and push actions. One file or folder for each panel. `theme.rs`
+//! defines every colour and spacing, `commands.rs` every key except those that fly (`flight_keys.rs`) or walk through
+//! lists.
 
 mod autosave;
 

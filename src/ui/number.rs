@@ -1,4 +1,4 @@
-//! A number that drags, types and steps.
+//! A number field: to drag, to type into and to step through.
 
 use std::cell::Cell;
 use std::ops::RangeInclusive;
@@ -16,27 +16,27 @@ use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::ui::commands::take_escape;
 use crate::words::quoted;
 
-/// Letters that one of three fields in a row has room for.
+/// Characters that fit into one of three fields in a row.
 const NARROW: usize = 7;
-/// The end of a range that is no larger is only there to be above 0.
+/// The lower end of a range, if below this, only means that numbers must be above 0.
 const SMALL: f64 = 0.5;
-/// Letters of the ends of a range.
+/// Characters for the ends of a range, in messages.
 const ENDS: usize = 9;
-/// Letters that a field by itself has room for.
+/// Characters that fit into a field with a row of its own.
 const WIDE: usize = 16;
 
-/// What a number may be, and what is said about it.
+/// The range and the description of a number.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// Label, and accessible name of the value.
     pub name: &'static str,
     /// Tooltip: meaning and range.
     pub hint: &'static str,
-    /// Behind the number.
+    /// Unit, shown after the number.
     pub unit: &'static str,
-    /// What a double-click on the label brings back.
+    /// Value that a double-click on the label restores.
     pub default: f64,
-    /// What is typed is within, and what is dragged stops at its ends.
+    /// Range: typed numbers outside are refused, and a drag stops at its ends.
     pub range: RangeInclusive<f64>,
     /// Change per point of dragging; `None` follows the value's size.
     pub speed: Option<f64>,
@@ -46,21 +46,21 @@ pub struct Field {
 #[derive(Clone, Copy)]
 struct LastDrag {
     number: Id,
-    /// The frame of the window.
+    /// Number of the window's frame in which this was noted.
     frame: u64,
-    /// What it was before.
+    /// Value before the drag.
     start: f64,
     stage: DragStep,
 }
 
-/// How far the drag of a number is.
+/// The state of a number's drag in this frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DragStep {
-    /// This frame is its first.
+    /// The drag begins in this frame.
     Begins,
-    /// It goes on.
+    /// The drag goes on.
     GoesOn,
-    /// What it has done is to be undone.
+    /// The drag was cancelled: its effect is to be undone.
     IsGivenUp,
 }
 
@@ -68,11 +68,11 @@ fn last_drag_id() -> Id {
     Id::unique("number that was dragged last")
 }
 
-/// Notes whether a number is dragged. What it was before, if that is given up with Escape, at which egui lets go of it.
+/// Notes whether a number is dragged. Returns the value before the drag if Escape, which ends it in egui, cancels it.
 fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     let frame = ui.cumulative_frame_nr();
     let last = ui.data(|data| data.get_temp::<LastDrag>(last_drag_id()));
-    // A frame may be laid out twice.
+    // egui may lay out a frame twice.
     let is_own = |last: &LastDrag| {
         last.number == response.id && (last.frame..=last.frame + 1).contains(&frame)
     };
@@ -97,7 +97,7 @@ fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     is_given_up.then_some(start)
 }
 
-/// How far the drag of a number is, if one is dragged in this frame.
+/// Returns the state of the drag, if a number is dragged in this frame.
 pub fn dragged(ctx: &Context) -> Option<DragStep> {
     let last: LastDrag = ctx.data(|data| data.get_temp(last_drag_id()))?;
     (last.frame == ctx.cumulative_frame_nr()).then_some(last.stage)
@@ -107,7 +107,7 @@ fn refused_id() -> Id {
     Id::unique("what was typed and not taken")
 }
 
-/// Notes what is wrong with what was typed into a field, once that is left.
+/// Notes why what was typed into a field is refused, once the focus leaves it.
 pub fn tell_refused(response: &Response, is_cancelled: bool, words: Option<String>) {
     if let Some(words) = words.filter(|_| response.lost_focus() && !is_cancelled) {
         response
@@ -116,12 +116,12 @@ pub fn tell_refused(response: &Response, is_cancelled: bool, words: Option<Strin
     }
 }
 
-/// What was wrong with what was typed last, once.
+/// Takes the reason why what was typed last was refused.
 pub fn take_refused(ctx: &Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(refused_id()))
 }
 
-/// What is wrong with a text for a field: it is no number, or one that is out of range.
+/// Returns what is wrong with a text for a field: it is not a number, or it is out of range.
 fn refusal(field: &Field, text: &str) -> Option<String> {
     match read(text) {
         None if text.is_empty() => None,
@@ -137,7 +137,7 @@ fn refusal(field: &Field, text: &str) -> Option<String> {
     }
 }
 
-/// What is wrong with a number that is out of the range of a field.
+/// Returns what is wrong with a number that is out of a field's range.
 fn out_of_range(field: &Field, number: f64) -> Option<String> {
     if field.range.contains(&number) {
         return None;
@@ -151,7 +151,7 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
     })
 }
 
-/// Whether a comma stands before three digits, which may be decimals or thousands.
+/// Returns whether a comma stands before exactly three digits, which may be decimals or thousands.
 fn is_ambiguous(text: &str) -> bool {
     let Some((before, after)) = text.split_once(',') else {
         return false;
@@ -162,17 +162,17 @@ fn is_ambiguous(text: &str) -> bool {
     is_group && after.len() == 3 && are_digits(whole) && are_digits(after)
 }
 
-/// The number that a text is, or the sum of it; `None` if it is neither.
+/// Parses a number or an arithmetic expression.
 fn read(text: &str) -> Option<f64> {
     read_number(text).or_else(|| calculate(text, read_number))
 }
 
-/// The number that a text is, if it is one and no other.
+/// Parses a number, unless the text can be read as two different ones.
 pub fn read_number(text: &str) -> Option<f64> {
     if is_ambiguous(text) {
         return None;
     }
-    // Half of the world writes a comma before decimals.
+    // In many languages, the decimal separator is a comma.
     let number: Option<f64> = text.parse().ok();
     let number = number.or_else(|| text.replacen(',', ".", 1).parse().ok());
     number.filter(|number| number.is_finite())
@@ -202,23 +202,23 @@ pub fn fraction(name: &'static str, hint: &'static str, default: f64) -> Field {
     }
 }
 
-/// How a draggable number looks and what it takes.
+/// The appearance and the range of a draggable number.
 pub struct Number<'a> {
-    /// What it may be.
+    /// Range and description.
     pub field: &'a Field,
-    /// What it is called; the field may have several.
+    /// Accessible name, since a field may consist of several numbers.
     pub name: &'a str,
     /// Width in points.
     pub width: f32,
-    /// The largest of the numbers beside it: what it is dragged as fast as, where it is smaller.
+    /// Largest absolute value of the numbers next to it: smaller ones are dragged as fast as that one.
     pub size: f64,
-    /// Where three numbers go that are typed at once: a whole vector.
+    /// Receives three numbers that are typed at once, a whole vector.
     pub pasted: Option<&'a Cell<Option<DVec3>>>,
-    /// The letter and the colour of the axis that it is along.
+    /// Letter and colour of the axis it belongs to.
     pub axis: Option<(&'static str, Color32)>,
 }
 
-/// One draggable number. Whether what is in it was confirmed with Enter, changed or not.
+/// Shows a draggable number. Returns whether it was confirmed with Enter, changed or not.
 pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
     let Number {
         field,
@@ -228,7 +228,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
         pasted,
         axis,
     } = *number;
-    // What is no length has a size of its own.
+    // A number that is not a length gets its least step from its default.
     let least = step_size(ui.ctx()).max((field.default.abs() * 1e-3).min(USUAL));
     let speed = (value.abs().max(size) * 0.01).max(least);
     let add = |ui: &mut Ui, widget: DragValue| {
@@ -256,7 +256,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
     is_confirmed
 }
 
-/// A draggable number in a bar, with nothing beside it that says its name.
+/// Shows a draggable number in a bar, without a label.
 pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
     let add = |ui: &mut Ui, widget: DragValue| {
         let speed = field.speed.unwrap_or(1.0);
@@ -266,14 +266,14 @@ pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
     enter(ui, (field, None), value, add).0.hint(field.hint);
 }
 
-/// A number that `add` shows: what is typed counts when it is left. Whether it was confirmed with Enter.
+/// Shows a number with `add`. Typed text counts when the field is left. Also returns whether Enter confirmed it.
 fn enter(
     ui: &mut Ui,
     (field, pasted): (&Field, Option<&Cell<Option<DVec3>>>),
     value: &mut f64,
     add: impl FnOnce(&mut Ui, DragValue) -> Response,
 ) -> (Response, bool) {
-    // Three in a row have less room.
+    // Three in a row have less room each.
     let most = if pasted.is_some() { NARROW } else { WIDE };
     let shown = |value: f64| rounded(value, field.unit, most);
     let (own, refused, is_as_shown) = (shown(*value), Cell::new(None), Cell::new(false));
@@ -289,9 +289,9 @@ fn enter(
         }
         let text = text.trim();
         is_as_shown.set(text == own);
-        // A field that is left as it was says nothing.
+        // Leaving a field unchanged is never an error.
         refused.set(refusal(field, text).filter(|_| text != own));
-        // What is out of range is a slip, and not a wish for its end.
+        // A number out of range is taken for a mistake, and not moved to the nearest end.
         read(text).filter(|number| field.range.contains(number))
     };
     let mut edited = *value;
@@ -303,11 +303,11 @@ fn enter(
         .custom_parser(parser);
     let response = add(ui, widget);
     if let Some(start) = given_up(ui, &response, *value) {
-        // Of the scene, that is undone besides, see [`dragged`]; other numbers have this alone.
+        // For the scene, the whole step is undone as well, see [`dragged`]; other numbers are only restored here.
         *value = start;
         return (response, false);
     }
-    // Formatting rounds what is shown; only a change by hand may reach the scene.
+    // What is shown is rounded: the value may change only if the user changed it.
     let is_cancelled = is_cancelled(ui, &response);
     if let Some(pasted) = pasted.filter(|_| is_cancelled) {
         pasted.set(None);
@@ -317,7 +317,7 @@ fn enter(
         && refused.is_none()
         && ui.input(|input| input.key_pressed(Key::Enter));
     tell_refused(&response, is_cancelled, refused);
-    // A field that is left as it was entered gives back what it showed.
+    // If the text is the shown one, the value keeps its hidden digits.
     let is_as_shown = !response.dragged() && is_as_shown.get();
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
         *value = edited.clamp(*field.range.start(), *field.range.end());
@@ -325,8 +325,8 @@ fn enter(
     (response, is_confirmed)
 }
 
-/// Whether the field was left with Escape, which gives what was typed up. A field counts as left
-/// for two frames, and in the second the key is gone: the first is remembered.
+/// Returns whether the field was left with Escape, which discards what was typed. egui reports the loss of focus for
+/// two frames, and in the second one the key is gone, so the first is remembered.
 pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {
     if !response.lost_focus() {
         return false;
@@ -340,8 +340,8 @@ pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {
         .is_some_and(|then| now <= then + 2)
 }
 
-/// The number with enough decimals to see what dragging changes, without a tail of digits, in at most so many
-/// letters.
+/// Formats a number with enough decimals to show the effect of a drag, but without a long tail of digits, in at most
+/// `most` characters.
 fn rounded(value: f64, unit: &str, most: usize) -> String {
     let decimals = match value.abs() {
         _ if unit == "°" => 2,

@@ -1,11 +1,11 @@
-//! Why a command would do nothing now.
+//! The reasons why a command would do nothing now.
 
 use super::commands::Command;
 use super::dialogs::Ask;
 use crate::editor::{Editor, Item, ItemKind, Selection};
 use crate::scene::{Scene, Shape};
 
-/// Why the command would do nothing now, if so.
+/// Returns why the command would do nothing now; `None` if it would do something.
 pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
     let nothing = "nothing is selected";
     match command {
@@ -26,7 +26,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             (!has).then_some("nothing that can be hidden is selected")
         }
         Command::Join => {
-            // Lights that are selected as well stay what they are.
+            // Selected lights are ignored.
             let scene = editor.scene();
             let items = editor.selection().of_kind(ItemKind::Object);
             let mut shapes = items.iter().map(|item| shape_of(scene, *item));
@@ -103,7 +103,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
     }
 }
 
-/// Whether the command would do anything now.
+/// Whether the command would do something now.
 pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
     obstacle(command, editor).is_none()
 }

@@ -1,4 +1,4 @@
-//! What commands do to everything that is selected.
+//! Commands that act on everything that is selected.
 
 use crate::editor::{Action, Arrangement, Edit, Editor, Item, ItemKind, Selection, excerpt};
 use crate::scene::Scene;
@@ -21,7 +21,7 @@ pub fn toggle_visible(editor: &mut Editor) {
     editor.apply(Action::Edit(Edit::Each(edits, format!("{verb} {name}"))));
 }
 
-/// The selected objects, or a triangle and all that share corners with it.
+/// Returns the selected objects or, if only a triangle is selected, all triangles connected to it by shared corners.
 pub fn joined(editor: &Editor) -> Vec<usize> {
     let selected = editor.selection().places(ItemKind::Object);
     match selected[..] {
@@ -30,12 +30,12 @@ pub fn joined(editor: &Editor) -> Vec<usize> {
     }
 }
 
-/// Everything that wears the pack of the last item that is selected, or the pack that it is.
+/// Adds to the selection everything with the color pack of the last selected item, which may be that pack itself.
 pub fn with_same_pack(scene: &Scene, selected: &Selection) -> Selection {
     let pack = selected.item().and_then(|item| item.color_pack(scene));
     let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
     let others = wearing.filter(|other| !selected.has(*other));
-    // What was selected stays so, and is what the inspector shows.
+    // The previous selection comes last, so that the inspector keeps showing its last item.
     Selection::all(others.chain(selected.items().iter().copied()))
 }
 
@@ -49,7 +49,7 @@ pub fn delete(editor: &mut Editor) {
     editor.apply(Action::Edit(edit));
 }
 
-/// Makes a copy of each of several things that are selected.
+/// Duplicates each of several selected items.
 pub fn duplicate_all(editor: &mut Editor) {
     let mut items = editor.selection().items().to_vec();
     if items.iter().any(|item| item.kind != ItemKind::Pack) {
@@ -59,17 +59,17 @@ pub fn duplicate_all(editor: &mut Editor) {
     }
     let label = format!("Duplicate {} items", items.len());
     items.sort_unstable();
-    // From the last on: a copy does not move those before it.
+    // In descending order, since a copy moves only the items after it.
     let edits = items.iter().rev().map(|item| Edit::Duplicate(*item));
     if editor.changes(Action::Edit(Edit::Each(edits.collect(), label))) {
-        // Each stands behind what it is a copy of.
+        // Each copy follows its original, so that those after it have moved on by one more.
         let copies = items.iter().zip(1..);
         let copies = copies.map(|(item, further)| Item::pack(item.index + further));
         editor.apply(Action::Select(Selection::all(copies)));
     }
 }
 
-/// One step up or down in its list for what is selected: one thing, or a group.
+/// Returns the edit that moves the selected item, or the selected items as a group, one step in its list.
 pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
     let (scene, selection) = (editor.scene(), editor.selection());
     let item = selection.item()?;
@@ -81,7 +81,7 @@ pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
         kind => {
             let items = selection.of_kind(kind);
             let places = || items.iter().map(|item| item.index);
-            // Counted without them.
+            // Places to move to are counted without the moved items.
             let to = if is_down {
                 let last = places().max().filter(|last| last + 1 < kind.count(scene))?;
                 last + 2 - items.len()

@@ -1,4 +1,4 @@
-//! The open file, written by another program: read anew, or held against the own changes.
+//! Changes of the open file by other programs: the file is reloaded, or compared with unsaved changes.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -15,41 +15,41 @@ use crate::mesh::marks_of_mesh;
 use crate::scene::{Document, List, Object, SceneError, differences};
 use crate::worker::Background;
 
-/// What messages are about that tell of it.
+/// Subject of the messages about changes from outside.
 pub const OUTSIDE: &str = "Changed outside";
-/// How often the open file is looked at.
+/// Time between two checks of the open file.
 const RHYTHM: Duration = Duration::from_secs(1);
-/// How often it is looked at once something has changed: whoever writes it may not be ready.
+/// Number of checks after a change: the other program may not have finished writing.
 const LOOKS: u32 = 3;
 /// Most lines of differences that are shown.
 const MOST_LINES: usize = 8;
 
-/// When the open file was looked at last, and how it was.
+/// The state of the open file and of its mesh files at the last check.
 #[derive(Default)]
 pub struct Watch {
     looked: Option<Instant>,
-    /// How many looks there are before the next guard.
+    /// Number of checks left before the next guard is started.
     left: u32,
-    /// The files that are looked at, the open one last.
+    /// The watched files, the open one last.
     watched: Vec<Watched>,
-    /// How they were at the last look.
+    /// Their marks at the last check.
     marked: Vec<Marked>,
-    /// Who looks while nothing changes: a window that rests draws nothing.
+    /// Thread that watches while nothing changes, since a resting window draws no frames.
     guard: Option<Guard>,
-    /// When it was written last, as far as is known.
+    /// Path of the open file and time of its last known change.
     found: Option<(PathBuf, SystemTime)>,
-    /// Why it could not be read: told if it is still so at the next look, since it may be half written.
+    /// Why it could not be read. Reported only if the file is the same at the next check, since it may be half written.
     broken: Option<String>,
-    /// What was not there at the last look.
+    /// File that was missing at the last check.
     missing: Option<PathBuf>,
-    /// The objects that were looked at last, and the files of their meshes.
+    /// Objects at the last check, and their mesh files.
     shown: Option<(List<Object>, Vec<WatchedMesh>)>,
-    /// What marked those files at the last look, and when they were last to be read.
+    /// Marks of those files at the last check, and marks of the state that was last handed out to be read.
     seen: HashMap<PathBuf, [Option<Marks>; 2]>,
 }
 
 impl Watch {
-    /// Whether files must be looked at again.
+    /// Whether the files must be checked now.
     pub fn is_due(&mut self, ctx: &Context, editor: &Editor) -> bool {
         let Some(path) = editor.path() else {
             self.guard = None;
@@ -57,7 +57,7 @@ impl Watch {
         };
         self.note_meshes(editor);
         if self.watched.last().is_none_or(|(last, _)| last != path) {
-            // An undo brings back what was read of a mesh before.
+            // Undo can bring back a mesh as it was read earlier, so what was read is compared too.
             let meshes = self.shown.iter().flat_map(|(_, files)| files);
             let meshes = meshes.map(|file| (file.full(), file.read));
             self.watched = meshes.chain([(path.to_owned(), None)]).collect();
@@ -84,19 +84,19 @@ impl Watch {
             self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.marked)));
             return false;
         }
-        // The frame after the last look makes the guard.
+        // The guard is started in the frame after the last check.
         let is_last = is_due && self.left == 0;
         ctx.request_repaint_after(if is_last { RHYTHM / 10 } else { RHYTHM });
         is_due
     }
 
-    /// What was found may not be all, or not be so at the next look.
+    /// Keeps checking for a while: what was found may be incomplete, or different at the next check.
     fn look_on(&mut self) {
         self.left = LOOKS;
     }
 
-    /// Tells if the file is not there, and was not at the last look either: whoever writes it anew may take it away first.
-    /// Whether that is so.
+    /// Reports the file as gone if it is missing in two checks in a row, since a program that rewrites it may delete it
+    /// first. Returns whether it is gone.
     pub fn note_gone(&mut self, editor: &mut Editor, path: &Path) -> bool {
         let is_missing = is_missing(path);
         let was_missing = self.missing.as_deref() == Some(path);
@@ -121,8 +121,8 @@ impl Watch {
         is_gone
     }
 
-    /// The files of meshes that were written since they were read, and are the same at two looks: they may have been
-    /// half written at the first. Their folders, and the paths in those.
+    /// Returns the folders and paths of mesh files that were written since they were read and are the same in two
+    /// checks in a row: in the first one, they may be half written.
     pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
         self.note_meshes(editor);
         let files = self.shown.iter().flat_map(|(_, files)| files);
@@ -134,7 +134,7 @@ impl Watch {
             let [found, asked] = seen.entry(full).or_default();
             let is_still = std::mem::replace(found, now) == now;
             is_moving |= !is_still;
-            // What is gone stays as it is in the window. What was broken meanwhile may be as it was.
+            // A deleted file keeps its mesh in the window. A file that was broken in between may be as it was read.
             let is_new = is_still && now.is_some() && now != asked.or(file.read);
             if is_new {
                 *asked = now;
@@ -164,8 +164,8 @@ impl Watch {
         }
     }
 
-    /// Whether the file is another than when it was looked at last, by what the disk says of it: it is not read
-    /// every second because it was touched, or cannot be read.
+    /// Returns whether the file was written since the last check, by its time on disk, so that it is not read every
+    /// second just because it was touched or is unreadable.
     pub fn is_news(&mut self, path: &Path) -> bool {
         let found = time_of(path).map(|time| (path.to_owned(), time));
         let is_news = found.is_none() || found != self.found;
@@ -176,46 +176,46 @@ impl Watch {
         is_news
     }
 
-    /// What was found is not there, or out of reach: it may be so next time.
+    /// Makes the next check count the file as news, because it was missing or unreachable.
     pub fn look_again(&mut self) {
         self.found = None;
     }
 
-    /// What was found could not be read, for this reason.
+    /// Notes why the file could not be read.
     pub fn note_broken(&mut self, why: String) {
         self.broken = Some(why);
     }
 
-    /// Why what was found before could not be read, once.
+    /// Takes the reason why the file could not be read at the previous check.
     pub fn take_broken(&mut self) -> Option<String> {
         self.broken.take()
     }
 }
 
-/// Tells that nothing but the window has what was in the file of the document, and why.
+/// Reports why the content of the document now exists only in the window.
 pub fn tell_lost(editor: &mut Editor, own_file: OwnFile, why: String) {
     editor.begin(OUTSIDE);
     editor.report_error_in(OUTSIDE, why);
     editor.set_own_file(own_file);
 }
 
-/// If something was wrong with that file, it is over.
+/// Clears a report about the document's file.
 pub fn forget_lost(editor: &mut Editor) {
     editor.begin(OUTSIDE);
     editor.set_own_file(OwnFile::Whole);
 }
 
-/// A file that meshes refer to.
+/// A mesh file that the scene refers to.
 struct WatchedMesh {
     folder: PathBuf,
     path: String,
-    /// What marked it when it was read.
+    /// Its marks when it was read.
     read: Option<Marks>,
 }
 
-/// A file, and what marked it when its mesh was read.
+/// A file, and its marks when its mesh was read.
 type Watched = (PathBuf, Option<Marks>);
-/// What marks a file now, the file, and what marked it when its mesh was read.
+/// The current marks of a file, its path, and its marks when its mesh was read.
 type Marked = (Option<Marks>, PathBuf, Option<Marks>);
 
 impl WatchedMesh {
@@ -224,12 +224,12 @@ impl WatchedMesh {
     }
 }
 
-/// Looks at files beside the window, and wakes it if one of them has changed.
+/// Watches files on a thread, and wakes the window if one of them changes.
 struct Guard {
-    /// The files, and what marked them when they were read.
+    /// The files, and their marks when they were read.
     files: Vec<Watched>,
     alarm: Background<()>,
-    /// Gone with the guard.
+    /// Dropped with the guard, which ends the thread.
     _alive: Arc<()>,
 }
 
@@ -254,21 +254,21 @@ impl Guard {
     }
 }
 
-/// What another program has written, and how it differs.
+/// The version of the file that another program has written, and how it differs.
 pub struct Theirs {
-    /// What it has written.
+    /// What was read of the file.
     document: Result<(Document, Stamp), SceneError>,
-    /// What tells it from the next, if it cannot be read as a scene.
+    /// Stamp of the file if it cannot be read as a scene, to recognise the next change.
     unread: Option<Stamp>,
     lines: Vec<String>,
 }
 
 impl Theirs {
-    /// Beside the document in the editor.
+    /// Compares it with the document in the editor. If reading failed, it is read once more.
     pub fn new(editor: &Editor, mut document: Result<(Document, Stamp), SceneError>) -> Self {
         let mut unread = None;
         if let Some(path) = editor.path().filter(|_| document.is_err()) {
-            // Its stamp first: what is written from now on is news.
+            // The stamp is taken first: whatever is written after that counts as a new change.
             unread = Stamp::read(path);
             document = Document::load_stamped(path);
         }
@@ -283,13 +283,13 @@ impl Theirs {
         }
     }
 
-    /// The own scene stays; the next save replaces this.
+    /// Keeps the scene of the editor; the next save replaces the other version.
     pub fn leave(self, editor: &mut Editor) {
         editor.begin(OUTSIDE);
         editor.keep_mine(self.document.ok(), self.unread);
     }
 
-    /// This takes the place of the own scene, if it is one.
+    /// Replaces the scene of the editor by this version, if it is readable.
     pub fn take(self, editor: &mut Editor) {
         if let Ok(theirs) = self.document {
             editor.begin(OUTSIDE);
@@ -297,7 +297,7 @@ impl Theirs {
         }
     }
 
-    /// Asks which of both is to stay: Yes for the own, No for theirs, and Other for both.
+    /// Asks which version to keep: Yes for that of the editor, No for the other one, and Other for both.
     pub fn ask(&self, ctx: &Context, title: &str) -> Reply {
         question(
             ctx,
@@ -308,7 +308,7 @@ impl Theirs {
                 self.describe(ui);
                 ui.add_space(2.0 * GRID);
                 ui.horizontal(|ui| {
-                    // None of them is what Enter means.
+                    // Enter chooses none of them.
                     if ui.button("Keep mine").clicked() {
                         *answer = Reply::Yes;
                     }
@@ -331,7 +331,7 @@ impl Theirs {
             Err(_) => "The file cannot be read any more:",
         });
         for line in self.lines.iter().take(MOST_LINES) {
-            // Below a sentence stands what must keep its columns.
+            // The first line is a sentence; the lines below must keep their columns.
             let (sentence, excerpt) = line.split_once('\n').unwrap_or((line, ""));
             ui.weak(sentence);
             if !excerpt.is_empty() {

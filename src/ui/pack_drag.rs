@@ -1,11 +1,11 @@
-//! Color packs that are dragged onto what shall wear them.
+//! Dragging color packs onto objects and markers.
 
 use egui::Response;
 
 use crate::editor::{Edit, Editor, Item, ItemKind};
 use crate::scene::{Light, Object};
 
-/// The pack that was dropped on a widget.
+/// Returns the color pack that was dropped on a widget.
 pub fn dropped_pack(response: &Response) -> Option<Item> {
     let dropped = response.dnd_release_payload::<Item>();
     dropped
@@ -13,7 +13,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
         .filter(|item| item.kind == ItemKind::Pack)
 }
 
-/// The change that makes an object or the marker of a light wear a pack; all that is selected, if it is among it.
+/// Returns the edit that gives a color pack to an object or a light's marker; to the whole selection if it is in it.
 pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     let scene = editor.shown();
     let name = pack.name(scene)?;

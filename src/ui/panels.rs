@@ -1,4 +1,4 @@
-//! The panels of the window, and the picture between them.
+//! Layout of the window's panels, with the picture between them.
 
 use egui::containers::panel::PanelState;
 use egui::{
@@ -18,11 +18,11 @@ use super::{inspector, legend, menu, status};
 use crate::editor::Mode;
 use crate::scene::Aspect;
 
-/// Width of the frame around a picture that is recorded, in points.
+/// Width of the frame around the picture during a recording, in points.
 const FRAME: f32 = 3.0;
 
 impl App {
-    /// The panels in the order in which Tab goes through them: outliner, picture, inspector, timeline.
+    /// Shows the panels in the order of the Tab key: outliner, picture, inspector, timeline.
     pub(super) fn show_panels(
         &mut self,
         ui: &mut Ui,
@@ -35,17 +35,17 @@ impl App {
             let files = (self.files.recent.as_slice(), &mut self.examples);
             menu::show(ui, &self.editor, files, &mut self.layout, out);
         });
-        // What stands below is as high as in the frame before, and drawn last.
+        // The panels below are shown last, so their height is that of the last frame.
         let mut upper = ui.available_rect_before_wrap();
         upper.max.y -= self.height_below(ui);
-        // It takes no room itself: the panels below do.
+        // A child takes no room from the panels below, which are laid out in `ui` itself.
         let mut above = ui.new_child(UiBuilder::new().max_rect(upper));
         let picture = self.show_upper(&mut above, out);
         self.show_below(ui, out);
         picture
     }
 
-    /// The outliner, the picture and the inspector.
+    /// Shows the outliner, the picture and the inspector.
     fn show_upper(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
         if self.layout.outliner {
             Panel::left(("outliner", is_narrow(ui)))
@@ -85,15 +85,15 @@ impl App {
             .inner
     }
 
-    /// The panel of the timeline, and its usual height: where nothing moves, the room is the picture's, and where
-    /// values do, they have rows.
+    /// Returns the name and the usual height of the timeline's panel: low if nothing is animated, to leave the room to
+    /// the picture; higher if there are tracks.
     fn timeline_panel(&self) -> (&'static str, f32) {
         let animation = &self.editor.scene().animation;
         if animation.is_still() {
             let rows = if animation.take.is_some() { 4.5 } else { 3.0 };
             ("timeline without keys", rows * ROW)
         } else if animation.keys.is_empty() && animation.take.is_none() {
-            // No flight, of which there are a graph and small pictures.
+            // Without a flight, there is no speed graph and there are no thumbnails.
             ("timeline without flight", 3.0 * ROW + TRACKS)
         } else if animation.tracks.is_empty() {
             ("timeline", TIMELINE)
@@ -102,7 +102,7 @@ impl App {
         }
     }
 
-    /// How high the timeline, the lab and the status line were in the last frame.
+    /// Returns the height in the last frame of the status line with the timeline or the lab.
     fn height_below(&self, ui: &Ui) -> f32 {
         let height = |size: Option<Vec2>, usual| size.map_or(usual, |size| size.y);
         let below = match self.layout.below {
@@ -116,7 +116,7 @@ impl App {
         height(size_of(ui, "status"), ROW) + below
     }
 
-    /// The status line, the lab and the timeline, from below.
+    /// Shows the status line, the lab and the timeline, from bottom to top.
     fn show_below(&mut self, ui: &mut Ui, out: &mut UiRequests) {
         Panel::bottom("status").exact_size(ROW).show(ui, |ui| {
             let frame = self.pictures.shown(&self.editor);
@@ -231,14 +231,14 @@ impl App {
             self.tools
                 .show(ui, &self.editor, picture, (wheel, is_busy), out);
         }
-        // What the colours mean stands in its place.
+        // In other aspects, the legend takes its place.
         if !is_still && self.layout.shot && aspect == Aspect::All {
             self.thumbs.show_shot(ui, &self.editor, place.rect, out);
         }
         (place, response)
     }
 
-    /// From a part of the still picture to all of it, and from that to the live view.
+    /// Returns from a part of the still picture to all of it, and from that to the live view.
     fn leave_still(&mut self, out: &mut UiRequests) {
         if self.pictures.region.take().is_none() {
             out.commands.push(Command::Live);
@@ -246,28 +246,28 @@ impl App {
     }
 }
 
-/// Whether the window is narrow: panels at its sides have other widths then, which are remembered by themselves.
+/// Whether the window is narrow. Panels at the sides have separate widths then, which are remembered separately.
 fn is_narrow(ui: &Ui) -> bool {
     ui.content_rect().width() < WIDE
 }
 
-/// How wide a panel is when it is first shown: in a narrow window as narrow as it can be.
+/// Returns the width of a panel when first shown: in a narrow window, the least one.
 fn usual(ui: &Ui, (least, wide): (f32, f32)) -> f32 {
     if is_narrow(ui) { least } else { wide }
 }
 
-/// The frame of the panels at the sides.
+/// Returns the frame of the panels at the sides.
 fn side(ui: &Ui) -> Frame {
     Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0))
 }
 
-/// How large a panel was in the last frame.
+/// Returns the size of a panel in the last frame.
 fn size_of(ui: &Ui, panel: impl AsIdSalt) -> Option<Vec2> {
     let state = PanelState::load(ui.ctx(), ui.scope_id().with_salt(IdSalt::new(panel)));
     state.map(|state| state.size())
 }
 
-/// Around the picture while it is recorded: a frame, and how long that is.
+/// Draws a frame around the picture during a recording, with its duration.
 fn show_recording(ui: &Ui, place: Place, seconds: f64) {
     let colors = palette(ui.ctx());
     let painter = ui.painter().with_clip_rect(place.rect.expand(GRID));
@@ -280,7 +280,7 @@ fn show_recording(ui: &Ui, place: Place, seconds: f64) {
     );
 }
 
-/// What an empty scene is begun with.
+/// Shows how to begin in an empty scene.
 fn hint_at_beginning(ui: &Ui, place: Place) {
     let words = "Nothing is here yet.\n\nAdd a shape with Add in the menu, drop a mesh or a scene file here,\nor begin with Open example in the File menu.";
     let font = TextStyle::Body.resolve(ui.style());

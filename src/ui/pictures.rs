@@ -1,4 +1,4 @@
-//! Between the editor and the render thread: which pictures are asked for, and which one is on screen.
+//! Connects the editor and the render thread: requests pictures, and selects the one on screen.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -21,14 +21,14 @@ use crate::worker::{
 /// Time over which pictures per second are counted.
 const RHYTHM: Duration = Duration::from_secs(1);
 
-/// When pictures of what came on the screen.
+/// The times at which pictures of new revisions came on the screen.
 #[derive(Debug, Default)]
 struct Rhythm {
     shown: VecDeque<(Instant, u64)>,
 }
 
 impl Rhythm {
-    /// The first picture of each revision counts.
+    /// Notes a picture; only the first one of each revision counts.
     fn note(&mut self, revision: u64, now: Instant) {
         if self.shown.back().is_none_or(|(_, last)| *last != revision) {
             self.shown.push_back((now, revision));
@@ -51,7 +51,7 @@ impl Rhythm {
     }
 }
 
-/// A still picture: revision, size and part.
+/// Revision, size and part of a still picture.
 type StillKey = (u64, (u32, u32), Option<Region>);
 
 /// The render thread and its pictures.
@@ -61,14 +61,14 @@ pub struct Pictures {
     pub screen: Display,
     rhythm: Rhythm,
     submitted: Option<(u64, (u32, u32), Pace, Aspect)>,
-    /// The scene that was shown in an aspect last, and what it became.
+    /// Aspect and scene of the last picture in an aspect, and the scene that was derived from it.
     aspect: Option<(Aspect, Arc<Scene>, Arc<Scene>)>,
     still_requested: Option<StillKey>,
-    /// The part of the still picture that is wanted, if not all of it is.
+    /// Part of the still picture to be traced; `None` for all of it.
     pub region: Option<Region>,
-    /// The document, and the size of its still picture, that the part is of.
+    /// Document and still picture size that `region` belongs to.
     region_of: (u64, (u32, u32)),
-    /// The take whose survey was asked for.
+    /// Take for which a survey was requested.
     surveyed: Option<Arc<Take>>,
 }
 
@@ -93,7 +93,7 @@ impl Pictures {
         })
     }
 
-    /// Takes up what the render thread has finished. Whether something has failed.
+    /// Handles what the render thread has finished. Returns whether something has failed.
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> bool {
         while let Some(frame) = self.worker.take_frame() {
             if !frame.is_still {
@@ -118,17 +118,17 @@ impl Pictures {
         has_failed
     }
 
-    /// What traces them.
+    /// The worker that traces the pictures.
     pub fn worker(&self) -> &Worker {
         &self.worker
     }
 
-    /// How many different pictures a second have been on screen lately.
+    /// Number of different pictures shown per second, over the last second.
     pub fn per_second(&self) -> f64 {
         self.rhythm.per_second(Instant::now())
     }
 
-    /// Asks what takes rays to answer: the panels' questions, and what a recorded flight has seen.
+    /// Asks the questions of panels that take rays to answer, and what a recorded flight has seen.
     pub fn ask(&mut self, editor: &Editor, questions: Vec<Question>) {
         for question in questions {
             let scene = Arc::clone(editor.shown());
@@ -151,7 +151,7 @@ impl Pictures {
         }
     }
 
-    /// The picture on screen, if it is finished, and of all of the light.
+    /// Returns the picture on screen if it is finished, has no missing part and shows all of the light.
     pub fn whole(&self, editor: &Editor) -> Option<&Frame> {
         let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
         let submitted = self.submitted.as_ref();
@@ -160,7 +160,7 @@ impl Pictures {
         frame.filter(|frame| frame.is_still || !is_part)
     }
 
-    /// Passes a wish of the lab on to the render thread.
+    /// Passes a request of the lab on to the render thread.
     pub fn fulfil(&self, wish: LabRequest) {
         match wish {
             LabRequest::Measure(study) => self.worker.measure(*study),
@@ -168,12 +168,12 @@ impl Pictures {
         }
     }
 
-    /// The picture on screen.
+    /// Returns the picture on screen.
     pub fn shown(&self, editor: &Editor) -> Option<&Frame> {
         self.shown_still(editor).or(self.screen.live())
     }
 
-    /// The still picture, if it is wanted and there.
+    /// Returns the still picture if it is to be shown and has been traced.
     pub fn shown_still(&self, editor: &Editor) -> Option<&Frame> {
         match editor.mode {
             Mode::HighRes => self
@@ -184,7 +184,7 @@ impl Pictures {
         }
     }
 
-    /// Whether the picture on screen is the finished one of the newest scene.
+    /// Whether the picture on screen is finished and shows the newest scene.
     pub fn is_settled(&self, editor: &Editor) -> bool {
         let is_finished =
             |frame: &Frame| frame.revision == editor.shown_revision() && frame.step == 1;
@@ -195,9 +195,9 @@ impl Pictures {
         is_shown && self.worker.activity() == Activity::Idle && !self.worker.is_asked()
     }
 
-    /// Asks for the still picture, and for a file of it.
+    /// Requests the still picture, and a file of it if `save_to` is given.
     pub fn request_still(&mut self, editor: &Editor, save_to: Option<PathBuf>) {
-        // What is written is also looked at.
+        // A file gets the whole picture, which is then shown as well.
         let region = self.region.filter(|_| save_to.is_none());
         let shown = self.shown_still(editor).filter(|_| save_to.is_some());
         let whole = shown.filter(|frame| frame.step == 1 && frame.region.is_none());
@@ -215,20 +215,20 @@ impl Pictures {
         });
     }
 
-    /// Gives up the still picture to look at.
+    /// Gives up the still picture that was only to be shown.
     pub fn leave_still(&mut self) {
         self.still_requested = None;
         self.worker.leave_still();
     }
 
-    /// Gives every still picture up, also one that is to be written.
+    /// Gives up every still picture, even one that is to be written to a file.
     pub fn cancel_still(&mut self) {
         self.still_requested = None;
         self.worker.cancel_still();
     }
 
-    /// The scene whose picture shows an aspect of another one's. Where only the camera has moved, its lists
-    /// are the same as before, and nothing is planned anew.
+    /// Returns the scene whose picture shows an aspect of `scene`. If only the camera has moved, it shares its lists
+    /// with the one before, so that nothing is planned again.
     fn in_aspect(&mut self, aspect: Aspect, scene: &Arc<Scene>) -> Arc<Scene> {
         if aspect == Aspect::All {
             return Arc::clone(scene);
@@ -251,8 +251,8 @@ impl Pictures {
         shown
     }
 
-    /// Asks for what the picture area, `pixels` large, needs and does not have; the live view shows
-    /// `aspect` of the light.
+    /// Requests what the picture area, `pixels` large, needs and does not have yet. The live view shows `aspect` of
+    /// the light.
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
         let revision = editor.shown_revision();
         let region_of = (editor.documents(), still_size(editor));
@@ -267,12 +267,12 @@ impl Pictures {
             return;
         }
         if !self.worker.is_tracing_still() {
-            // What is on its way is not asked for again; what has failed is.
+            // A picture that is being traced is not requested again, but one that failed is.
             self.still_requested = None;
         }
         let (size, pace) = match editor.mode {
             Mode::LowRes => (low_res(pixels), Pace::Whole),
-            // A frame of the animation has its time, and no more.
+            // A frame of the animation may take as long as it is shown, and no longer.
             Mode::Live | Mode::HighRes if editor.timeline().is_playing => {
                 let frame = 1.0 / editor.shown().animation.frames_per_second;
                 let frame = Duration::from_secs_f64(frame / editor.timeline().speed);

@@ -1,5 +1,4 @@
-//! The questions over the window: about unsaved changes, about quitting, and for a path where the
-//! desktop offers no dialog.
+//! Questions over the window: about unsaved changes, about quitting, and for a path if the desktop offers no dialog.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,25 +11,25 @@ use super::theme::{GRID, palette};
 use crate::files::make_folder;
 use crate::words::shortened;
 
-/// Letters of a path that a message has room for.
+/// Characters of a path that a message has room for.
 const LONGEST_PATH: usize = 200;
 
-/// What the user said.
+/// The answer of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// Nothing yet.
+    /// No answer yet.
     Open,
     /// The primary button.
     Yes,
-    /// The other way to go on.
+    /// The other way to proceed.
     No,
-    /// A third one.
+    /// A third way to proceed.
     Other,
-    /// Not at all.
+    /// Not to proceed.
     Cancel,
 }
 
-/// Asks what becomes of unsaved changes: saved, lost, or neither; of exports that are given up as well.
+/// Asks whether to save unsaved changes; `going` describes exports that quitting would interrupt.
 pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Reply {
     let look = ("unsaved changes", 380.0, Reply::Yes);
     question(ctx, look, |ui, answer| {
@@ -53,13 +52,13 @@ pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Rep
     })
 }
 
-/// Asks whether quitting is meant, also where exports are going on.
+/// Asks whether to quit; `going` describes exports that are still running.
 pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Reply {
     let (width, heading) = match going {
         Some(_) => (380.0, "Quit while exporting?"),
         None => (160.0, "Quit Glint?"),
     };
-    // Esc asks for it too, which is pressed in passing: what ends the session is not the next key.
+    // Esc, which is often pressed in passing, leads here too, so Enter must not end the session.
     question(ctx, ("quit", width, Reply::Cancel), |ui, answer| {
         ui.heading(heading);
         tell_going(ui, going);
@@ -84,7 +83,7 @@ fn tell_going(ui: &mut Ui, going: Option<&str>) {
     }
 }
 
-/// A path as people type it: `~` is the home folder.
+/// Returns the path that a user typed, in which `~` is the home folder.
 pub fn typed_path(text: &str) -> PathBuf {
     let text = text.trim();
     match (text.strip_prefix('~'), std::env::home_dir()) {
@@ -96,22 +95,22 @@ pub fn typed_path(text: &str) -> PathBuf {
     }
 }
 
-/// A path that is being typed.
+/// A prompt for a path.
 pub struct PathPrompt {
     ask: Ask,
     label: &'static str,
     text: String,
     is_new: bool,
-    /// The file that was asked about: whether it is to be replaced.
+    /// File about whose replacement the user was asked.
     asked: Option<PathBuf>,
-    /// Why a folder could not be made.
+    /// Why a folder could not be created.
     problem: Option<String>,
-    /// Why what was asked for did not succeed with this path.
+    /// Why the operation failed with this path.
     refused: Option<String>,
 }
 
 impl PathPrompt {
-    /// Starts from a path that is likely meant, with a label before it.
+    /// Creates a prompt with a suggested path and a label above the field.
     pub fn new(ask: Ask, suggested: &Path, label: &'static str) -> Self {
         Self {
             ask,
@@ -124,17 +123,17 @@ impl PathPrompt {
         }
     }
 
-    /// It did not succeed with the path that was typed, for this reason.
+    /// Notes why the operation failed with the typed path, and lets the user type its name again.
     pub fn refuse(&mut self, why: String) {
         (self.refused, self.is_new) = (Some(why), true);
     }
 
-    /// The path that was typed, with `~` for the home folder and the ending that files have.
+    /// The typed path, with `~` expanded and a missing ending added.
     pub fn path(&self) -> PathBuf {
         self.ask.with_ending(self.typed())
     }
 
-    /// The same as it is typed.
+    /// The typed path without an ending added.
     fn typed(&self) -> PathBuf {
         typed_path(&self.text)
     }
@@ -170,11 +169,11 @@ impl PathPrompt {
                 if is_accepted && (!self.would_replace() || self.is_asked()) {
                     *answer = Reply::Yes;
                 } else if is_accepted {
-                    // Whoever types a name quickly has not read yet that there is such a file.
+                    // A fast typist has not read yet that such a file exists.
                     self.asked = Some(self.path());
                 }
                 if *answer == Reply::Open && entered {
-                    // What was typed is not lost: it can be mended.
+                    // The field keeps the focus, so that the text can be corrected.
                     field.request_focus();
                 }
                 if let Some(folder) = self.missing_folder()
@@ -192,7 +191,7 @@ impl PathPrompt {
         })
     }
 
-    /// What the button says that goes on.
+    /// Returns the text of the primary button.
     fn word(&self) -> &'static str {
         if !self.ask.writes() {
             "Open file"
@@ -203,17 +202,17 @@ impl PathPrompt {
         }
     }
 
-    /// Whether a file is there that would be another one then.
+    /// Whether an existing file would be replaced.
     fn would_replace(&self) -> bool {
         self.ask.writes() && self.path().is_file()
     }
 
-    /// Whether it was asked whether that is meant.
+    /// Whether the user was asked about replacing this file.
     fn is_asked(&self) -> bool {
         self.asked.as_ref() == Some(&self.path())
     }
 
-    /// The folder of a file to be written, if it is not there, and can be made.
+    /// Returns the folder of a file to be written, if it does not exist and can be created.
     fn missing_folder(&self) -> Option<PathBuf> {
         let path = self.path();
         let folder = path.parent().filter(|_| self.ask.writes())?;
@@ -221,7 +220,7 @@ impl PathPrompt {
         (!is_there && self.file_in_the_way().is_none()).then(|| folder.to_owned())
     }
 
-    /// A file that stands where a folder would have to be.
+    /// Returns a file that is in the place of a folder of the path.
     fn file_in_the_way(&self) -> Option<PathBuf> {
         let path = self.path();
         let folders = path.ancestors().skip(1);
@@ -243,7 +242,7 @@ impl PathPrompt {
             return impossible(words);
         }
         if let Some(words) = self.refused.clone() {
-            // It may succeed now.
+            // The operation may succeed now.
             return Some(Warning {
                 words,
                 is_possible: true,
@@ -262,7 +261,7 @@ impl PathPrompt {
         let takes_folder = self.ask == Ask::ExportFolder;
         let is_begun = self.text.trim().ends_with(std::path::is_separator);
         if !takes_folder && (is_begun || self.typed().is_dir() || path.is_dir()) {
-            // Its name may not be typed yet.
+            // The file name may not be typed yet.
             let words = if is_begun { "" } else { "This is a folder" };
             return impossible(words.to_owned());
         }
@@ -285,14 +284,14 @@ impl PathPrompt {
     }
 }
 
-/// What is to be known of a path.
+/// A remark about a path.
 struct Warning {
     words: String,
-    /// Whether it can be used all the same.
+    /// Whether the path can be used nevertheless.
     is_possible: bool,
 }
 
-/// Whether Enter was pressed, and is not only held.
+/// Returns whether Enter was pressed in this frame, not counting repeats of a held key.
 fn is_entered(input: &InputState) -> bool {
     let is_it = |event: &Event| {
         matches!(
@@ -308,7 +307,7 @@ fn is_entered(input: &InputState) -> bool {
     input.events.iter().any(is_it)
 }
 
-/// The name of a file in its path, without its ending: from which letter to which. Typing shall replace that.
+/// Returns the characters of a path that are the file's name without its ending, which typing is to replace.
 fn stem(path: &str) -> Range<usize> {
     let name = path.rsplit(std::path::is_separator).next().unwrap_or(path);
     let stem = Path::new(name).file_stem().unwrap_or_default();
@@ -317,7 +316,7 @@ fn stem(path: &str) -> Range<usize> {
     start..start + length(&stem.to_string_lossy())
 }
 
-/// Selects letters of a field, which remembers where the caret was in another text.
+/// Selects characters of a text field, whose stored cursor may be from another text.
 pub fn select_letters(ui: &Ui, field: Id, letters: Range<usize>) {
     let mut state = TextEdit::load_state(ui.ctx(), field).unwrap_or_default();
     let [start, end] = [letters.start, letters.end].map(CCursor::new);
@@ -326,7 +325,7 @@ pub fn select_letters(ui: &Ui, field: Id, letters: Range<usize>) {
     state.store(ui.ctx(), field);
 }
 
-/// A question over the window, of a name, a width and what Enter answers; Escape answers it with
+/// Shows a question over the window, with a name, a width and the reply that Enter gives. Escape gives
 /// [`Reply::Cancel`].
 pub fn question(
     ctx: &Context,
@@ -345,11 +344,11 @@ pub fn question(
         ui.set_width(width);
         add(ui, &mut answer);
     });
-    // A click beside it, in passing, is no answer: what is typed there is lost otherwise, and goes elsewhere.
+    // An accidental click beside it is no answer: typed text would be lost, and further typing would go elsewhere.
     if answer == Reply::Open && modal.should_close() && !modal.backdrop_response.clicked() {
         answer = Reply::Cancel;
     }
-    // The key that has led to the question does not answer it.
+    // The key press that opened the question must not answer it.
     let was_asked = asked.is_some_and(|last| last + 1 == now);
     if answer == Reply::Open && was_asked && ctx.input(|input| input.key_pressed(Key::Enter)) {
         answer = on_enter;
@@ -357,7 +356,7 @@ pub fn question(
     answer
 }
 
-/// The button that is meant to be pressed.
+/// Shows the primary button.
 pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))

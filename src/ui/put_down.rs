@@ -1,4 +1,4 @@
-//! Things that are put down on what is below them.
+//! Puts things down on what is below them.
 
 use std::collections::HashMap;
 
@@ -9,18 +9,18 @@ use crate::editor::{Edit, ItemKind, Selection};
 use crate::lab::meet;
 use crate::scene::{Scene, Shape, around};
 
-/// Vertical lines along each side of a thing on which what is below it is looked for.
+/// Number of vertical lines along each side of a thing that probe what is below it.
 const LINES: usize = 5;
-/// Most shapes and faces that are met by such lines: a tenth of a second.
+/// Most tests of shapes and faces with such lines: they take a tenth of a second.
 const MOST_WORK: usize = 20_000_000;
-/// What is no farther from what is below it stands there: a share of the coordinates.
+/// Gap up to which a thing counts as standing on what is below it, relative to the coordinates.
 const STANDING: f64 = 1e-9;
-/// How high something flat lies over what is below it, as a share of its size: in its surface, one would not be seen.
+/// Height of a flat thing above what is below it, as a share of its size: in the same surface, it might be invisible.
 const LYING: f64 = 1e-3;
-/// How far from a thing lines begin that are to meet it: a share of the coordinates.
+/// Distance from a thing at which lines towards it begin, relative to the coordinates.
 const APART: f64 = 1e-6;
 
-/// A vertical line through a thing: where, and where the thing begins and ends there.
+/// A vertical line through a thing: its position, and the thing's lowest and highest point on it.
 struct VerticalLine {
     x: f64,
     z: f64,
@@ -28,11 +28,11 @@ struct VerticalLine {
     high: f64,
 }
 
-/// Puts each selected object, and each group that is selected as a whole, down on what is below it; what has sunk in is
-/// lifted.
+/// Puts each selected object, and each group that is selected as a whole, down on what is below it. Things that have
+/// sunk in are lifted.
 ///
 /// # Errors
-/// Why nothing moves, in words.
+/// The reason why nothing moves, in words.
 pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static str> {
     let mut bodies = bodies(scene, selected);
     let ends = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
@@ -49,7 +49,7 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
     } else {
         LINES
     };
-    // What stands on others comes down with them.
+    // In ascending order, so that things that stand on others come down with them.
     let low = |body: &Vec<usize>| bounds(scene, body).0.y;
     bodies.sort_by(|one, other| low(one).total_cmp(&low(other)));
     let (mut scene, mut edits) = (scene.clone(), Vec::new());
@@ -78,8 +78,8 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
     Ok(Edit::Each(edits, label))
 }
 
-/// The selected objects that come down together, by their places in ascending order: those of whole groups, and the
-/// others one by one.
+/// Returns the selected objects that move together, as ascending indices: the members of whole groups together, and
+/// other objects one by one.
 fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
     let mut members: HashMap<&str, usize> = HashMap::new();
     for object in &scene.objects {
@@ -103,7 +103,7 @@ fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
     bodies
 }
 
-/// How far these objects are above what is below them; 0 where they stand. `None` where nothing is.
+/// Returns the height of these objects above what is below them: 0 if they stand there; `None` if nothing is below.
 fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
     let gaps = lines_through(scene, body, lines).into_iter();
     let gaps = gaps.filter_map(|line| Some(line.low - ground_below(scene, body, &line)?));
@@ -120,7 +120,7 @@ fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
     Some(if is_standing { 0.0 } else { gap })
 }
 
-/// Lines through these objects: so many along each side, and the one through their lowest point.
+/// Returns lines through these objects: `lines` along each side, and the one through their lowest point.
 fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<VerticalLine> {
     let (low, high) = bounds(scene, body);
     let shapes = || body.iter().map(|&index| &scene.objects[index].shape);
@@ -156,11 +156,11 @@ fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<VerticalLin
     found
 }
 
-/// How high what these objects could stand on is on a line, below their top there.
+/// Returns the height of the highest surface on a line, below the top of these objects, that they could stand on.
 fn ground_below(scene: &Scene, body: &[usize], line: &VerticalLine) -> Option<f64> {
     let from = DVec3::new(line.x, line.high, line.z);
     let others = scene.objects.iter().enumerate();
-    // Those of a body are in ascending order: a group may have thousands.
+    // Binary search: `body` is ascending, and a group may have thousands of objects.
     let others =
         others.filter(|(index, other)| other.visible && body.binary_search(index).is_err());
     let heights = others.filter_map(|(_, other)| {
@@ -172,7 +172,7 @@ fn ground_below(scene: &Scene, body: &[usize], line: &VerticalLine) -> Option<f6
     heights.reduce(f64::max)
 }
 
-/// The highest point of a shape below another one; nothing from inside of a ball.
+/// Returns the height at which a shape is met below `from`; `None` if that is inside a ball.
 fn downwards(shape: &Shape, from: DVec3) -> Option<f64> {
     let from = from + DVec3::Y * apart(from);
     let (t, normal) = meet(shape, from, DVec3::NEG_Y)?;
@@ -180,7 +180,7 @@ fn downwards(shape: &Shape, from: DVec3) -> Option<f64> {
     (!is_inside).then_some(from.y - t)
 }
 
-/// The lowest point of a shape above another one.
+/// Returns the height at which a shape is met above `from`.
 fn upwards(shape: &Shape, from: DVec3) -> Option<f64> {
     let from = from - DVec3::Y * apart(from);
     Some(from.y + meet(shape, from, DVec3::Y)?.0)
@@ -190,7 +190,7 @@ fn apart(from: DVec3) -> f64 {
     APART * (1.0 + from.abs().max_element())
 }
 
-/// The box around objects that end.
+/// Returns the bounding box of objects that are not endless.
 fn bounds(scene: &Scene, body: &[usize]) -> (DVec3, DVec3) {
     let bounds = body
         .iter()
@@ -198,7 +198,7 @@ fn bounds(scene: &Scene, body: &[usize]) -> (DVec3, DVec3) {
     around(bounds).unwrap_or_default()
 }
 
-/// Where a shape is lowest; `None` for planes.
+/// Returns the lowest point of a shape; `None` for planes.
 fn lowest_point(shape: &Shape) -> Option<DVec3> {
     match shape {
         Shape::Plane(_) => None,
@@ -224,7 +224,7 @@ mod tests {
     use crate::mesh::SOLIDS;
     use crate::scene::{Disc, Mesh, Object, Plane, Sphere};
 
-    /// These shapes over the ground.
+    /// Makes a scene of these shapes above the ground.
     fn scene(shapes: Vec<Shape>) -> Scene {
         let mut scene = Scene::empty();
         let ground = Plane {
@@ -297,7 +297,7 @@ mod tests {
             ..group.objects[2].clone()
         };
         group.objects.push(above);
-        // Beside something else, it is one as well.
+        // The group also moves as one if another object is selected too.
         for places in [&[0, 1][..], &[0, 1, 3]] {
             let mut group = group.clone();
             assert!(put(&mut group, places));
@@ -328,7 +328,7 @@ mod tests {
 
     #[test]
     fn what_stands_beside_holds_nothing_up() {
-        // In the corner of the box around the large one, and not below it.
+        // The small ball is below a corner of the large one's bounding box, but not below the large one.
         let mut scene = scene(vec![ball(0.0, 50.0, 50.0), ball(46.0, 5.0, 5.0)]);
         let Shape::Sphere(small) = &mut scene.objects[1].shape else {
             panic!("a ball");

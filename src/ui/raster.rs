@@ -1,4 +1,4 @@
-//! Widgets drawn without a window and without a graphics card, into a picture.
+//! Draws widgets into a picture, without a window and without a graphics card.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TextureId, Theme,
 use super::theme::{install, palette};
 use crate::image::Image;
 
-/// Frames that layouts take to settle.
+/// Number of frames that layouts take to settle.
 const FRAMES: usize = 4;
 
 /// Draws what `show` puts into a window of `width × height` points, each of them `scale` pixels wide.
@@ -95,7 +95,7 @@ fn fill(canvas: &mut ColorImage, mesh: &Mesh, clip: Rect, texture: &ColorImage, 
     }
 }
 
-/// Colours the pixels whose centres are in a triangle.
+/// Colours the pixels whose centres are inside a triangle.
 fn fill_triangle(
     canvas: &mut ColorImage,
     corners: [Vertex; 3],
@@ -125,7 +125,7 @@ fn fill_triangle(
             }
             let shares = [doubled(p, b, c), doubled(a, p, c), doubled(a, b, p)];
             let shares = shares.map(|share| share / area);
-            // A pixel on the edge of two triangles belongs to one of them.
+            // A pixel centre on the common edge of two triangles belongs to only one of them.
             let edges = [(b, c), (c, a), (a, b)];
             let inside = shares.iter().zip(edges).all(|(&share, (from, to))| {
                 let (from, to) = if area > 0.0 { (from, to) } else { (to, from) };
@@ -141,7 +141,7 @@ fn fill_triangle(
     }
 }
 
-/// The vertices' colour times the texture's, premultiplied, 0–1.
+/// Returns the interpolated vertex colour times that of the texture, premultiplied, 0–1.
 fn mixed(corners: [Vertex; 3], shares: [f32; 3], texture: &ColorImage) -> [f32; 4] {
     let mut color = [0.0; 4];
     let mut place = egui::Vec2::ZERO;
@@ -179,7 +179,7 @@ fn bilinear(texture: &ColorImage, place: egui::Vec2) -> [f32; 4] {
     })
 }
 
-/// A premultiplied colour over an opaque one.
+/// Blends a premultiplied colour over an opaque one.
 fn over(color: [f32; 4], below: Color32) -> Color32 {
     let rest = 1.0 - color[3];
     let [red, green, blue, _] = below.to_array();
@@ -203,7 +203,7 @@ mod tests {
         ColorImage::new(size, pixels.collect())
     }
 
-    /// A square of two triangles, half transparent.
+    /// Makes a half-transparent square of two triangles.
     fn square(from: Pos2, to: Pos2) -> Mesh {
         let mut mesh = Mesh::default();
         mesh.add_colored_rect(

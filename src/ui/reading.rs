@@ -1,4 +1,4 @@
-//! A file that is read beside the window, which stays live meanwhile.
+//! A file that is read on another thread, while the window stays usable.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -10,32 +10,32 @@ use crate::mesh::{MeshError, MeshFile, read_mesh_file};
 use crate::scene::{Document, MeshSource, Scene, SceneError};
 use crate::worker::Background;
 
-/// What was read.
+/// The outcome of reading.
 pub enum Read {
-    /// A scene file with its meshes, which takes the place of the document.
+    /// A scene file with its meshes, which replaces the document.
     Scene(Box<Result<(Document, Stamp), SceneError>>),
     /// A mesh file, whose parts become objects.
     Mesh(Result<MeshFile, MeshError>),
-    /// Files that meshes refer to, once more.
+    /// Mesh files of the scene, read again.
     Again(Vec<MeshSource>),
-    /// Nothing: the reader stopped.
+    /// Nothing: the reading thread stopped.
     Nothing,
 }
 
 /// A file that is being read.
 pub struct Reading {
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
     answer: Background<Read>,
     is_scene: bool,
     since: Instant,
-    /// The document when its reading began, and which of them it was, see [`Editor::documents`].
+    /// The scene when reading began, and the number of its document, see [`Editor::documents`].
     before: Arc<Scene>,
     document: u64,
 }
 
 impl Reading {
-    /// Begins to read a scene.
+    /// Starts to read a scene file.
     pub fn scene(editor: &Editor, path: &Path) -> Self {
         let read = |path: PathBuf| Read::Scene(Box::new(Document::load_stamped(&path)));
         Self {
@@ -44,17 +44,17 @@ impl Reading {
         }
     }
 
-    /// Whether what is read takes the place of the document.
+    /// Whether what is read replaces the document.
     pub fn is_scene(&self) -> bool {
         self.is_scene
     }
 
-    /// Begins to read a mesh file.
+    /// Starts to read a mesh file.
     pub fn parts(editor: &Editor, path: &Path) -> Self {
         Self::start(editor, path, |path| Read::Mesh(read_mesh_file(&path)))
     }
 
-    /// Begins to read once more what meshes refer to, if that is something: paths in their folders.
+    /// Starts to read mesh files again, given as folders and paths within them; `None` if there are none.
     pub fn again(editor: &Editor, files: Vec<(PathBuf, String)>) -> Option<Self> {
         let (folder, path) = files.first()?;
         let first = folder.join(path);
@@ -81,13 +81,13 @@ impl Reading {
         }
     }
 
-    /// What was read, if that is known within so long.
+    /// Returns what was read, if that is known within this time.
     pub fn wait(&mut self, most: Duration) -> Option<Read> {
         let read = self.answer.take_within(most)?;
         Some(read.unwrap_or(Read::Nothing))
     }
 
-    /// Whether the document was changed since.
+    /// Whether the document has changes since reading began that are not saved, or a flight is being recorded.
     pub fn is_outrun(&self, editor: &Editor) -> bool {
         let is_other = !Arc::ptr_eq(&self.before, editor.scene());
         (editor.is_dirty() && is_other) || editor.is_recording()
@@ -98,13 +98,13 @@ impl Reading {
         self.document != editor.documents()
     }
 
-    /// What is said where it came too late.
+    /// Returns the message about a mesh that arrived after its document was closed.
     pub fn describe_late(&self) -> String {
         let name = self.name();
         format!("{name} was not imported: the scene that it was for is not open any more")
     }
 
-    /// What is said where the reader stopped with a fault of its own.
+    /// Returns the message about a reading thread that stopped because of an error of its own.
     pub fn describe_fault(&self) -> String {
         let path = self.path.display();
         format!("{path} could not be read: the reader stopped")
@@ -116,7 +116,7 @@ impl Reading {
         name.to_string_lossy().into_owned()
     }
 
-    /// In words, for the status line; what was read may have to wait.
+    /// Describes the reading for the status line; if not `is_free`, what was read waits for an open question.
     pub fn describe(&self, is_free: bool) -> String {
         let name = self.name();
         if !is_free {

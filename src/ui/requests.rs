@@ -1,32 +1,32 @@
-//! What panels ask for.
+//! Requests that panels make.
 
 use super::commands::Command;
 use crate::editor::{Action, Edit, Selection, Time};
 use crate::worker::Question;
 
-/// What panels ask for while they are drawn; done when all of them are.
+/// Requests made while the panels are drawn, and carried out once all of them are.
 #[derive(Debug, Default)]
 pub struct UiRequests {
-    /// Changes of the document.
+    /// Actions of the editor.
     pub actions: Vec<Action>,
-    /// What keys and menus do.
+    /// Commands from keys and menus.
     pub commands: Vec<Command>,
-    /// What takes rays to answer.
+    /// Questions that take rays to answer.
     pub questions: Vec<Question>,
 }
 
 impl UiRequests {
-    /// Asks for a change of the scene.
+    /// Requests a change of the scene.
     pub fn edit(&mut self, edit: Edit) {
         self.actions.push(Action::Edit(edit));
     }
 
-    /// Asks something of the timeline.
+    /// Requests an action of the timeline.
     pub fn time(&mut self, time: Time) {
         self.actions.push(Action::Time(time));
     }
 
-    /// Asks for something to be shown in the inspector.
+    /// Requests a selection, which the inspector then shows.
     pub fn select(&mut self, selection: impl Into<Selection>) {
         self.actions.push(Action::Select(selection.into()));
     }

@@ -1,5 +1,5 @@
-//! The rows of the inspector: label left, value right. Every number drags, types and steps; a
-//! double-click on its label brings the default back; vectors paste as `1, 2, 3`.
+//! The rows of the inspector: label left, value right. Every number can be dragged, typed and stepped; a double-click
+//! on its label restores the default; vectors can be pasted as `1, 2, 3`.
 
 use std::cell::Cell;
 
@@ -25,17 +25,17 @@ pub struct FieldRows<'u> {
     chosen: Option<EditedPart>,
 }
 
-/// A value that was chosen by hand, whether or not it was another one before.
+/// A value that the user chose in this frame, even if it was the same before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EditedPart {
     /// The field.
     pub field: &'static str,
-    /// Which of three numbers; `None` for all of them, or the only one.
+    /// Index of one of three numbers; `None` for all of them, or for a single value.
     pub part: Option<usize>,
 }
 
 impl<'u> FieldRows<'u> {
-    /// No rows yet.
+    /// Creates a stack without rows.
     pub fn new(ui: &'u mut Ui) -> Self {
         let (changed, chosen) = (None, None);
         Self {
@@ -45,12 +45,12 @@ impl<'u> FieldRows<'u> {
         }
     }
 
-    /// The field that changed in this frame, if one did.
+    /// Returns the field that changed in this frame, if any.
     pub fn changed(&self) -> Option<&'static str> {
         self.changed
     }
 
-    /// What was chosen in this frame – picked, confirmed with Enter, or brought back –, if something was.
+    /// Returns what was chosen in this frame, if anything: picked, confirmed with Enter, or reset.
     pub fn chosen(&self) -> Option<EditedPart> {
         self.chosen
     }
@@ -61,13 +61,13 @@ impl<'u> FieldRows<'u> {
         }
     }
 
-    /// A title above rows.
+    /// Adds a title above rows.
     pub fn heading(&mut self, text: &str) {
         self.ui.add_space(GRID);
         self.ui.label(RichText::new(text).strong());
     }
 
-    /// A number.
+    /// Adds a row with a number.
     pub fn number(&mut self, field: &Field, value: &mut f64) {
         let (before, mut is_chosen) = (*value, false);
         row(
@@ -96,7 +96,7 @@ impl<'u> FieldRows<'u> {
         }
     }
 
-    /// Three numbers in one row.
+    /// Adds a row with three numbers.
     pub fn vector(&mut self, field: &Field, default: DVec3, value: &mut DVec3) {
         let (before, mut chosen) = (*value, None);
         row(self.ui, field, &format_vec3(default), |ui, reset| {
@@ -140,7 +140,7 @@ impl<'u> FieldRows<'u> {
         self.chosen = chosen.or(self.chosen);
     }
 
-    /// A colour: a swatch that opens a picker, and its channels 0–255, of which each has a name too.
+    /// Adds a row with a colour: a swatch that opens a picker, and channels 0–255, each with a name of its own.
     pub fn color(
         &mut self,
         (name, channels): (&'static str, [&'static str; 3]),
@@ -204,7 +204,7 @@ impl<'u> FieldRows<'u> {
         self.chosen = chosen.or(self.chosen);
     }
 
-    /// A tick box.
+    /// Adds a row with a tick box.
     pub fn toggle(&mut self, name: &'static str, hint: &str, value: &mut bool) {
         let changed = labelled(self.ui, name, hint, |ui, label| {
             let tick = ui.checkbox(value, "").labelled_by(label.id);
@@ -214,7 +214,7 @@ impl<'u> FieldRows<'u> {
         self.note(name, changed);
     }
 
-    /// One of some words.
+    /// Adds a row with a choice among named options.
     pub fn choice<T: PartialEq>(
         &mut self,
         name: &'static str,
@@ -270,13 +270,13 @@ macro_rules! color_names {
 }
 pub(crate) use color_names;
 
-/// Whether this is the name of a channel of a colour.
+/// Returns whether this is the name of a colour's channel.
 pub fn is_channel(name: &str) -> bool {
     let (_, ends) = color_names!("");
     ends.iter().any(|end| name.ends_with(end))
 }
 
-/// A row whose label resets it.
+/// Shows a row whose label resets it.
 fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool)) {
     let hint = format!(
         "{}\nDouble-click: back to {default}{}",
@@ -288,7 +288,7 @@ fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool
     });
 }
 
-/// A label of fixed width, then the rest of the row.
+/// Shows a label of fixed width, then the rest of the row.
 fn labelled<T>(
     ui: &mut Ui,
     name: &str,
@@ -302,13 +302,13 @@ fn labelled<T>(
             ui.add(
                 Label::new(RichText::new(name).weak())
                     .truncate()
-                    // No stop for Tab: the next value is.
+                    // Tab skips it and goes to the value.
                     .sense(Sense::CLICK),
             )
         });
         let label = label.inner;
         label.hint_beside(ui, hint);
-        // Narrow fields keep their digits clear of their borders, and no more.
+        // Just enough to keep the digits of narrow fields clear of the borders.
         ui.spacing_mut().button_padding.x = GRID / 2.0;
         add(ui, &label)
     })
@@ -324,7 +324,7 @@ fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let response = ui
         .color_edit_button_srgb(&mut bytes)
         .accessible_name(format!("{name} swatch"));
-    // White on white would have no end.
+    // Without a border, a swatch of the panel's colour would be invisible.
     let line = Stroke::new(1.0, palette(ui.ctx()).line);
     ui.painter()
         .rect_stroke(response.rect, 2, line, StrokeKind::Inside);
@@ -334,7 +334,7 @@ fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
     }
 }
 
-/// The colour as `#RRGGBB`, to copy and to type.
+/// Shows the colour as `#RRGGBB`, to copy and to type.
 fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let [r, g, b] = to_bytes(*value);
     let packed = f64::from(u32::from_be_bytes([0, r, g, b]));
@@ -364,11 +364,11 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
     response.hint_beside(ui, "Click to type or copy, for example #FF8040");
 }
 
-/// Six digits, or three that are each meant twice.
+/// Parses six hexadecimal digits, or three, of which each counts twice.
 fn parse_hex(text: &str) -> Option<u32> {
     let digits = text.trim().trim_start_matches('#');
     if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-        return None; // Signs would pass.
+        return None; // `from_str_radix` would accept a sign.
     }
     let number = u32::from_str_radix(digits, 16).ok()?;
     match digits.len() {
@@ -378,7 +378,7 @@ fn parse_hex(text: &str) -> Option<u32> {
     }
 }
 
-/// The channels of a colour from 0 to 255, rounded; what is beyond is the nearest of them.
+/// Returns the channels of a colour, rounded and clamped to 0–255.
 pub fn to_bytes(color: DVec3) -> [u8; 3] {
     color.to_array().map(|channel| channel.round() as u8)
 }

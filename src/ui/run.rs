@@ -1,4 +1,4 @@
-//! What each command comes to.
+//! Carries out commands.
 
 use std::path::Path;
 
@@ -24,23 +24,23 @@ use crate::editor::{
 use crate::scene::{Aspect, Bookmark, Document, Projection};
 use crate::words::counted;
 
-/// Seconds within which Escape twice asks to quit.
+/// Seconds within which a second press of Escape asks whether to quit.
 const TWICE: f64 = 3.0;
 
 /// Most triangles that are copied as text.
 const COPIED_FACES: usize = 100_000;
 
-/// What messages about commands are about that are not possible.
+/// Subject of messages about commands that are not possible.
 const OBSTACLE: &str = "obstacle";
-/// What messages about pasting are about.
+/// Subject of messages about pasting.
 const PASTE: &str = "paste";
 
 impl App {
-    /// Does what panels and keys have asked for; whether a text was edited when the frame began.
+    /// Carries out the requests of panels and keys; `was_typing` says whether a text was edited when the frame began.
     pub(super) fn carry_out(&mut self, ctx: &Context, out: UiRequests, was_typing: bool) {
         let is_entered = ctx.input(|input| input.key_pressed(Key::Enter));
         if is_entered && !was_typing && !(out.commands.is_empty() && out.actions.is_empty()) {
-            // By itself, a menu closes only where its entry was chosen with the mouse.
+            // egui closes a menu by itself only if its entry was chosen with the mouse.
             Popup::close_all(ctx);
         }
         let before = self.editor.revision();
@@ -56,12 +56,12 @@ impl App {
             self.run(ctx, command);
         }
         if self.editor.revision() != before {
-            // What was measured before is not what is edited.
+            // What was measured before no longer matches the scene.
             self.lab.leave();
         }
     }
 
-    /// Opens, or adds, what is dropped onto the window.
+    /// Opens or imports files that are dropped onto the window.
     pub(super) fn take_dropped(&mut self, ctx: &Context) {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         let files: Vec<_> = files.iter().map(|file| file.path().to_owned()).collect();
@@ -102,7 +102,7 @@ impl App {
                 let outcome = self.files.start(ctx, &mut self.editor, next);
                 self.act_on(ctx, outcome);
             }
-            // Nothing comes of it before it is answered.
+            // Nothing happens before the user answers.
             Command::Ask(ask) => self.files.ask(ctx, &mut self.editor, ask),
             Command::Save => {
                 let outcome = self.files.save(ctx, &mut self.editor);
@@ -146,7 +146,7 @@ impl App {
                 self.lab.leave();
                 self.layout.aspect = aspect;
                 if self.editor.mode == Mode::HighRes {
-                    // Its picture has all of the light.
+                    // The still picture always shows all of the light.
                     self.editor.apply(Action::Show(Mode::Live));
                 }
             }
@@ -160,7 +160,7 @@ impl App {
             Command::Find => self.finder.open(),
             Command::Shortcuts => self.shortcuts_open = !self.shortcuts_open,
             other => {
-                // Menus show what is not possible; keys do not.
+                // Menus show what is not possible, but keys need a message.
                 if let Some(why) = obstacle(&other, &self.editor) {
                     let what = what_of(&other).unwrap_or_default();
                     return self.editor.notify_about(OBSTACLE, format!("{what}: {why}"));
@@ -177,7 +177,7 @@ impl App {
         }
     }
 
-    /// Says how to see what is selected, and new, if it is beside the picture.
+    /// Tells the user how to see the new selection if it is outside the picture.
     fn tell_unseen(&mut self, what: &str) {
         if is_selected_unseen(&self.editor) {
             let text = format!("{what} is not in the picture; F brings it in");
@@ -185,11 +185,11 @@ impl App {
         }
     }
 
-    /// Shows this below the picture, or takes it away: the timeline comes back in place of the lab.
+    /// Shows this panel below the picture, or hides it. Hiding the lab brings the timeline back.
     fn toggle_below(&mut self, panel: Below) {
         self.lab.leave();
         if std::mem::take(&mut self.layout.is_alone) {
-            // It was not seen.
+            // The panel was not visible, so it is shown rather than toggled.
             self.layout.below = panel;
             return;
         }
@@ -200,17 +200,17 @@ impl App {
         };
     }
 
-    /// Whether all keys are meant where all is to be selected: the pointer is over the line of time.
+    /// Whether *Select all* applies to keys, because the pointer is over the timeline.
     fn means_keys(&self, ctx: &Context) -> bool {
         let is_over = self.timeline.is_hovered(ctx.cumulative_frame_nr());
         let has_keys = !self.editor.scene().animation.is_still();
         has_keys && is_over
     }
 
-    /// Puts what is selected on the clipboard. Whether it is there.
+    /// Copies what is selected to the clipboard. Returns whether that succeeded.
     fn copy(&mut self, ctx: &Context) -> bool {
         let part = excerpt(self.editor.scene(), self.editor.selection());
-        // Another window looks for files in another folder. What is large is copied as the name of its file.
+        // Another window looks for mesh files in another folder, so only large meshes are copied as file names.
         let whole = if part.faces() <= COPIED_FACES {
             part.taken_in()
         } else {
@@ -258,10 +258,10 @@ impl App {
         }
     }
 
-    /// The commands that are actions of the editor.
+    /// Runs the commands that are actions of the editor.
     fn run_on_scene(&mut self, command: &Command) {
         let editor = &mut self.editor;
-        // Each is a step of its own, whatever keys are held still.
+        // Each is an undo step of its own, even while keys are held.
         editor.end_gesture();
         let action = match command {
             Command::Undo => Action::Undo,
@@ -359,7 +359,7 @@ impl App {
         }
     }
 
-    /// Leaves the innermost of what is going on; where nothing is, the second time asks to quit.
+    /// Leaves the innermost mode or window. If there is none, a second press asks whether to quit.
     fn escape(&mut self, ctx: &Context) {
         let time = ctx.input(|input| input.time);
         let last = self.escaped.take();
@@ -400,8 +400,8 @@ impl App {
     }
 }
 
-/// What a command has done whose key is a letter or a digit, and which changes all of the picture: a field may have been
-/// meant.
+/// Returns a message for commands on a letter or digit key that change the whole picture: the key may have been
+/// meant for a text field.
 fn told(command: &Command) -> Option<&'static str> {
     Some(match command {
         Command::Orthographic => "Orthographic projection; P is perspective",
@@ -412,7 +412,7 @@ fn told(command: &Command) -> Option<&'static str> {
     })
 }
 
-/// This view as one more bookmark.
+/// Returns the action that adds this view as a bookmark.
 fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
     let name = free_bookmark_name(&bookmarks, "View 1");

@@ -1,4 +1,4 @@
-//! What is probably not meant in the scene, with a way to it and, where there is one, a way out.
+//! Hints about probable mistakes in the scene, with a button to select what is affected and, for some, one to fix it.
 
 use std::sync::Arc;
 
@@ -14,31 +14,31 @@ use crate::words::counted;
 
 /// Width of the list in points.
 const WIDTH: f32 = 420.0;
-/// Most rows that are seen at once.
+/// Greatest number of visible rows.
 const MOST_ROWS: f32 = 12.0;
 
-/// What was found in a state of the scene.
+/// The hints about a state of the scene.
 #[derive(Default)]
 pub struct SceneCheck {
     of: Option<u64>,
-    /// What was found of other things than the camera, and in which scene.
+    /// Hints that do not depend on the camera, and the scene they are about.
     things: Option<(Arc<Scene>, Vec<Hint>)>,
     hints: Vec<Hint>,
-    /// Whether too much of the picture is as bright as can be.
+    /// Whether a hint about clipping was added for this state.
     is_clipped: bool,
 }
 
-/// Share of the picture from which on it is told that it clips.
+/// Share of clipped pixels in the picture above which a hint is given.
 const CLIPPED: f64 = 0.05;
 
 impl SceneCheck {
-    /// Looks at the scene again, if it has changed; not while something is dragged.
+    /// Checks the scene again if it has changed, unless something is being dragged.
     pub fn update(&mut self, editor: &Editor, is_busy: bool) {
         if self.of != Some(editor.revision()) && !is_busy {
             self.of = Some(editor.revision());
             let scene = editor.scene();
             let known = self.things.take();
-            // To look at surfaces in one place takes long, and needs no camera.
+            // Finding coincident surfaces takes long, and does not depend on the camera.
             let known = known.filter(|(of, _)| of.has_same_things(scene));
             let found = known.map_or_else(|| thing_hints(scene), |(_, found)| found);
             self.hints = camera_hints(scene);
@@ -48,7 +48,7 @@ impl SceneCheck {
         }
     }
 
-    /// Takes up how much of the finished picture of the scene is as bright as can be, 0–1.
+    /// Takes the share of the finished picture of the scene that is at full brightness, 0–1.
     pub fn take_clipped(&mut self, clipped: f64) {
         if clipped <= CLIPPED || self.is_clipped {
             return;
@@ -64,7 +64,7 @@ impl SceneCheck {
         });
     }
 
-    /// A button that counts the hints, and the list of them.
+    /// Shows a button with the number of hints, which opens their list.
     pub fn show(&self, ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
         let count = self.hints.len();
         if count == 0 {
@@ -112,7 +112,7 @@ fn selection(about: About) -> Selection {
     }
 }
 
-/// What would mend it: packs that nothing wears can go, and what is there twice can be hidden.
+/// Returns a fix for a hint: unused color packs can be deleted, and duplicates can be hidden.
 fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
         About::Pack(index) => Some(("Delete", Edit::Delete(vec![Item::pack(index)]))),

@@ -1,4 +1,4 @@
-//! A picture of the window itself, made by the window: what the README shows.
+//! A screenshot of the window, taken by the window itself, as shown in the README.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -9,22 +9,22 @@ use egui::{ColorImage, Context};
 use crate::export::{ExportError, save_image};
 use crate::image::{Film, Image};
 
-/// Frames to wait for once the traced picture is there, so that the panels have their final size.
+/// Frames to wait after the traced picture is finished, so that the panels have their final size.
 const CALM_FRAMES: u32 = 8;
 
-/// A picture that was asked for on the command line.
+/// A screenshot requested on the command line.
 #[derive(Debug)]
 pub struct Screenshot {
     path: PathBuf,
-    /// Told how it went.
+    /// Receives the outcome.
     outcome: Sender<Result<(), ExportError>>,
     calm: u32,
     pixels: Option<Receiver<Arc<ColorImage>>>,
 }
 
 impl Screenshot {
-    /// A screenshot of the window as it is when its traced picture is complete. How writing it went arrives in
-    /// the channel.
+    /// Creates a screenshot of the window, taken when its traced picture is complete. The outcome of writing it arrives
+    /// in the channel.
     pub fn new(path: PathBuf) -> (Self, Receiver<Result<(), ExportError>>) {
         let (outcome, told) = channel();
         (
@@ -38,8 +38,8 @@ impl Screenshot {
         )
     }
 
-    /// Once a frame: asks for the pixels when all is calm, writes them when they come. True when
-    /// it is done.
+    /// Called once a frame: requests the pixels once the window has settled, and writes them when they arrive. Returns
+    /// whether it is done.
     pub fn tick(&mut self, ctx: &Context, is_settled: bool) -> bool {
         ctx.request_repaint();
         self.calm = if is_settled { self.calm + 1 } else { 0 };
@@ -47,7 +47,7 @@ impl Screenshot {
             let (sender, receiver) = channel();
             self.pixels = Some(receiver);
             ctx.request_screenshot(move |image| {
-                // The window may be gone by now, and with it the wish.
+                // The window may be closed by now, so that nobody receives the pixels.
                 let _ = sender.send(image);
             });
         }
@@ -72,7 +72,7 @@ impl Screenshot {
             }),
             &self.path,
         );
-        // Whoever asked waits for the window to end before it looks.
+        // The receiver is read after the window has closed, if at all.
         let _ = self.outcome.send(written);
         true
     }

@@ -1,4 +1,4 @@
-//! What the program gives the window.
+//! The settings with which the program opens the window.
 
 use std::path::PathBuf;
 
@@ -6,29 +6,29 @@ use super::dialogs::{Dialogs, Native};
 use super::screenshot::Screenshot;
 use super::start::StartWatch;
 
-/// The name under which the system keeps the window's settings.
+/// Name under which the system stores the window's settings.
 pub const APP_ID: &str = "glint";
 
-/// What the program gives the window.
+/// The settings with which the program opens the window.
 pub struct Setup {
-    /// The scene to open; the demo if there is none.
+    /// Scene file to open; the demo if there is none.
     pub scene: Option<PathBuf>,
-    /// How paths are asked for.
+    /// The dialogs that ask for paths.
     pub dialogs: Box<dyn Dialogs>,
-    /// Where unsaved work is kept; `None` keeps none.
+    /// Folder for unsaved work and other data; `None` stores none.
     pub data_folder: Option<PathBuf>,
-    /// A picture to be made of the window, which then closes.
+    /// Screenshot to be taken, after which the window closes.
     pub screenshot: Option<Screenshot>,
-    /// Watches how long the start takes; the window then closes.
+    /// Measures how long the start takes, after which the window closes.
     pub start: Option<StartWatch>,
-    /// Whether the window of exports is open at first.
+    /// Whether the window of exports is open at the beginning.
     pub exports: bool,
-    /// The names of objects and lights that are selected at first.
+    /// Names of objects and lights that are selected at the beginning.
     pub select: Vec<String>,
 }
 
 impl Setup {
-    /// The desktop's dialogs and data folder.
+    /// Uses the desktop's dialogs and data folder.
     pub fn native(scene: Option<PathBuf>) -> Self {
         Self {
             scene,

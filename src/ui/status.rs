@@ -1,4 +1,4 @@
-//! The line at the bottom: the truth about the picture on screen, and what the tracer is doing.
+//! The status line at the bottom: facts about the picture on screen, and what the tracer is doing.
 
 use std::time::{Duration, Instant};
 
@@ -12,20 +12,20 @@ use super::theme::palette;
 use crate::scene::Scene;
 use crate::worker::Activity;
 
-/// Time after which a running picture is worth showing that it runs.
+/// Time after which the progress of a still picture is shown.
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Time after which the remaining time is shown.
 const FORECAST: Duration = Duration::from_secs(1);
 
-/// Time after which a picture of which nothing is to be seen must have a scene that takes long to make ready.
+/// Time after which a picture that does not appear must have a scene that takes long to prepare.
 const READY: Duration = Duration::from_millis(500);
 
-/// Most of the line that what the tracer is doing may take up.
+/// Greatest share of the line for what the tracer is doing.
 const MOST: f32 = 0.6;
-/// Height of what stands in the line: lower than the line, which must not jump.
+/// Height of widgets in the line: less than that of the line, which must not change.
 const BAR: f32 = 16.0;
 
-/// Shows the line; the picture on screen is given in words and by its revision.
+/// Shows the line. The picture on screen is given by its description and its revision.
 pub fn show(
     ui: &mut Ui,
     (picture, shown): (&str, Option<u64>),
@@ -34,7 +34,7 @@ pub fn show(
     (check, scene): (&SceneCheck, &Scene),
     out: &mut UiRequests,
 ) {
-    // As high with hints as without.
+    // The height must be the same with and without hints.
     ui.set_min_height(ui.available_height());
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = BAR;
@@ -45,7 +45,7 @@ pub fn show(
             doing(ui, activity, shown, note, out);
         });
         check.show(ui, scene, out);
-        // What there is no room for is cut here.
+        // The description is truncated if there is not enough room.
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let words = RichText::new(picture).monospace().weak();
             ui.add(Label::new(words).truncate());
@@ -53,7 +53,7 @@ pub fn show(
     });
 }
 
-/// What the tracer is doing; `note` where it rests.
+/// Shows what the tracer is doing, or `note` if it is idle.
 fn doing(
     ui: &mut Ui,
     activity: &Activity,
@@ -103,7 +103,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     } else {
         String::new()
     };
-    // Never 100 % before it is done.
+    // Rounded down, and never 100 % before it is done.
     let text = format!("High-res {:.0} %{left}", (share * 100.0).floor().min(99.0));
     let text = RichText::new(text).small().color(palette(ui.ctx()).text);
     let bar = ProgressBar::new(share as f32)
@@ -113,7 +113,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     ui.request_repaint_after(Duration::from_millis(50));
 }
 
-/// A time in seconds or minutes.
+/// Formats a duration in seconds or minutes, rounded up.
 pub fn time_in_words(seconds: f64) -> String {
     if seconds < 90.0 {
         format!("{:.0}\u{a0}s", seconds.ceil())
@@ -122,7 +122,7 @@ pub fn time_in_words(seconds: f64) -> String {
     }
 }
 
-/// When the work was last kept.
+/// Describes when the work was last autosaved.
 pub fn autosaved(at: Instant) -> String {
     format!("autosaved {}", ago(at.elapsed()))
 }

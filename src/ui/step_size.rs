@@ -1,22 +1,22 @@
-//! How fine the numbers of a scene are.
+//! The step size of dragged lengths, which depends on the size of the scene.
 
 use egui::{Context, Id};
 
 use crate::scene::{List, Object, Scene};
 
-/// What a point of a drag changes a length by at least, as a share of the scene.
+/// Least change of a length per point of a drag, as a share of the scene's extent.
 const SHARE: f64 = 1e-4;
-/// The same in a scene of usual size, or without any, in world units.
+/// Upper limit of that change, and its value in a scene without extent, in world units.
 pub const USUAL: f64 = 0.01;
 
-/// Keeps the step size of what is edited.
+/// Keeps the step size up to date with the edited scene.
 #[derive(Default)]
 pub struct StepSize {
     of: Option<List<Object>>,
 }
 
 impl StepSize {
-    /// Takes the size of the scene, if its objects have changed.
+    /// Computes the step size of the scene again if its objects have changed.
     pub fn update(&mut self, ctx: &Context, scene: &Scene) {
         let is_known = |of: &List<Object>| of.is_same(&scene.objects);
         if self.of.as_ref().is_some_and(is_known) {
@@ -30,7 +30,7 @@ impl StepSize {
     }
 }
 
-/// What a point of a drag changes a length by at least: a scene in metres has finer numbers than one in millimetres.
+/// Returns the least change of a length per point of a drag: finer for a scene in metres than in millimetres.
 pub fn step_size(ctx: &Context) -> f64 {
     let known = ctx.data(|data| data.get_temp(id()));
     known.filter(|step_size| *step_size > 0.0).unwrap_or(USUAL)

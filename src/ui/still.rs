@@ -1,5 +1,5 @@
-//! Hands in the still picture: the wheel enlarges it, a drag moves it, a drag with Shift marks the part that
-//! is traced anew.
+//! Interaction with the still picture: the wheel magnifies it, a drag moves it, and a drag with Shift marks the part
+//! that is traced again.
 
 use egui::{
     Event, Key, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui,
@@ -11,44 +11,44 @@ use super::theme::palette;
 use super::viewport::Place;
 use crate::plan::Region;
 
-/// Points of a touchpad that are as much as one step of a wheel.
+/// Points of a touchpad that count as one step of a wheel.
 const POINTS_PER_STEP: f32 = 50.0;
-/// Seconds between two steps.
+/// Least time between two steps, in seconds.
 const PAUSE: f64 = 0.08;
 
-/// How the still picture is looked at.
+/// The state of the view of the still picture.
 #[derive(Default)]
 pub struct Still {
     magnifier: Magnifier,
-    /// How far the wheel was turned since the last step.
+    /// Steps that the wheel has turned since the last change of magnification.
     turned: f32,
-    /// When that was.
+    /// Time of that change, in seconds.
     stepped_at: f64,
-    /// Where a part begins that is being marked.
+    /// Corner at which a part that is being marked begins.
     from: Option<Pos2>,
-    /// Whether the marking was given up, of which the button is still held.
+    /// Whether the marking was cancelled while its button is still held.
     is_given_up: bool,
 }
 
 impl Still {
-    /// Shows one pixel as one of the screen; all of the picture again, if that `is_seen` already.
+    /// Shows one picture pixel per screen pixel; or the whole picture, if that is already so and the picture `is_seen`.
     pub fn show_actual_size(&mut self, is_seen: bool) {
         let is_actual = is_seen && self.magnifier.factor == 1;
         self.magnifier = Magnifier::default();
         self.magnifier.factor = u32::from(!is_actual);
     }
 
-    /// Shows all of the next picture.
+    /// Resets the view, so that the next picture is shown as a whole.
     pub fn leave(&mut self) {
         (self.magnifier, self.from) = (Magnifier::default(), None);
     }
 
-    /// Whether a part of it is being marked, which Escape gives up.
+    /// Whether a part of the picture is being marked, which Escape cancels.
     pub fn is_marking(&self) -> bool {
         self.from.is_some()
     }
 
-    /// What the picture is called on itself.
+    /// Returns the name that is shown on the picture.
     pub fn name(&self, is_part: bool) -> String {
         match (is_part, self.magnifier.factor) {
             (true, _) => "High-res, a part".to_owned(),
@@ -57,7 +57,7 @@ impl Still {
         }
     }
 
-    /// Draws the still picture, which is so many pixels large, and does what hands ask of it.
+    /// Draws the still picture of `size` pixels, and handles the pointer over it.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -72,7 +72,7 @@ impl Still {
             self.turned += wheel(ui);
             let now = ui.input(|input| input.time);
             if now - self.stepped_at < PAUSE {
-                // One notch of a wheel can arrive as several.
+                // A single notch of a wheel can arrive as several events.
                 self.turned = 0.0;
             } else if self.turned.abs() >= 1.0 {
                 let up = self.turned > 0.0;
@@ -121,7 +121,7 @@ impl Still {
     }
 }
 
-/// How far the wheel was turned in this frame, in steps; up is positive.
+/// Returns how far the wheel was turned in this frame, in steps; up is positive.
 fn wheel(ui: &Ui) -> f32 {
     ui.input(|input| {
         let turned = input.events.iter().map(|event| match event {
@@ -135,7 +135,7 @@ fn wheel(ui: &Ui) -> f32 {
     })
 }
 
-/// The pixels of a picture of this size, drawn to `to`, that are in what was marked.
+/// Returns the pixels under a marked rectangle, of a picture of `size` pixels drawn to `to`; `None` if there are none.
 fn region(marked: Rect, to: Rect, size: (usize, usize)) -> Option<Region> {
     let pixel = |at: f32, from: f32, length: f32, count: usize| {
         let share = ((at - from) / length).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Every colour and every spacing of the window. Nothing else in `ui` names one.
+//! The colours of the window, and the sizes and spacings that its parts share.
 
 use egui::style::WidgetVisuals;
 use egui::{
@@ -14,27 +14,27 @@ pub const ROW: f32 = 24.0;
 pub const GRID: f32 = 8.0;
 /// Width of the labels in the inspector.
 pub const LABEL: f32 = 80.0;
-/// Widths of the outliner: the least, and the one when it is first shown in a wide window.
+/// Least width of the outliner, and its first width in a wide window, in points.
 pub const OUTLINER: (f32, f32) = (188.0, 224.0);
-/// The same of the inspector; it does not follow its content.
+/// The same for the inspector, whose width does not follow its content.
 pub const INSPECTOR: (f32, f32) = (300.0, 332.0);
-/// Width of a window in which panels at the sides are first shown as wide as they like.
+/// Least width of a window in which side panels are first shown at full width.
 pub const WIDE: f32 = 960.0;
 /// Height of the lab when it is first shown.
 pub const LAB: f32 = 280.0;
 /// Height of the timeline when it is first shown, without tracks.
 pub const TIMELINE: f32 = 216.0;
-/// Height of a few of them, which are in sight at first.
+/// Height of a few tracks, which are visible at first.
 pub const TRACKS: f32 = 3.0 * TRACK;
 /// Least and largest width of the labels of the timeline's tracks.
 pub const TRACK_LABEL: (f32, f32) = (112.0, 224.0);
 /// Height of a track of the timeline.
 pub const TRACK: f32 = 20.0;
-/// Height of the small pictures above keys.
+/// Height of the thumbnails above keys.
 pub const THUMB: f32 = 44.0;
 /// Height of the graph of the camera's speed.
 pub const GRAPH: f32 = 56.0;
-/// Width of a colour as `#RRGGBB`.
+/// Width of the field for a colour as `#RRGGBB`.
 pub const HEX: f32 = 60.0;
 /// Size of plain text.
 pub const TEXT: f32 = 13.0;
@@ -43,10 +43,10 @@ pub const ICON: f32 = 16.0;
 
 const RADIUS: CornerRadius = CornerRadius::same(4);
 
-/// The roles that colours play.
+/// The colours by their roles.
 #[derive(Clone, Copy, Debug)]
 pub struct Palette {
-    /// Behind everything, around the picture.
+    /// Background of the window, around the picture.
     pub window: Color32,
     /// Panels.
     pub panel: Color32,
@@ -58,7 +58,7 @@ pub struct Palette {
     pub line: Color32,
     /// Text.
     pub text: Color32,
-    /// Text that explains.
+    /// Explanatory text.
     pub muted: Color32,
     /// The one accent: selection, primary button.
     pub accent: Color32,
@@ -70,16 +70,16 @@ pub struct Palette {
     pub selected: Color32,
     /// Errors, and nothing else.
     pub error: Color32,
-    /// The families of dots on a chart: told apart without colour sight too (after Okabe and Ito, "Color
-    /// universal design", 2008), and by their shapes.
+    /// Families of dots on a chart: distinguishable without colour vision too (after Okabe and Ito, "Color universal
+    /// design", 2008), and also by their shapes.
     pub families: [Color32; 6],
     /// The x, y and z axes.
     pub axes: [Color32; 3],
     /// The letters of the axes, in fields.
     pub axis_letters: [Color32; 3],
-    /// What is drawn over pictures.
+    /// Lines and text drawn over pictures.
     pub on_picture: Color32,
-    /// Around that, so that it is seen on any picture.
+    /// Outline of these, which makes them visible on any picture.
     pub halo: Color32,
 }
 
@@ -149,12 +149,12 @@ const LIGHT: Palette = Palette {
     halo: HALO,
 };
 
-/// The colours of the theme that is on.
+/// Returns the palette of the current theme.
 pub fn palette(ctx: &Context) -> Palette {
     of(ctx.theme())
 }
 
-/// The colours of lines in a picture, which is mostly dark, whatever the theme.
+/// Returns the palette for lines in a picture, which is mostly dark, whatever the theme.
 pub fn in_picture() -> Palette {
     DARK
 }
@@ -166,7 +166,7 @@ fn of(theme: Theme) -> Palette {
     }
 }
 
-/// Gives the window its fonts and both its themes, of which `chosen` is on.
+/// Installs the fonts and both themes, with `chosen` as the current one.
 pub fn install(ctx: &Context, chosen: Theme) {
     egui_material_icons::initialize(ctx);
     glyphs::install(ctx);
@@ -182,7 +182,7 @@ fn restyle(style: &mut Style, theme: Theme) {
     spacing.button_padding = vec2(GRID, GRID / 4.0);
     spacing.interact_size = vec2(40.0, ROW);
     spacing.combo_width = 0.0;
-    // Bars stand beside what they scroll, and not over its last letters.
+    // Scroll bars get room of their own and do not cover the content.
     spacing.scroll.floating_allocated_width = spacing.scroll.bar_width;
     style.text_styles = [
         (TextStyle::Small, 11.0, FontFamily::Proportional),
@@ -238,7 +238,7 @@ fn visuals(theme: Theme) -> Visuals {
 mod tests {
     use super::*;
 
-    /// The relative luminance of a colour; Web Content Accessibility Guidelines 2.2.
+    /// Returns the relative luminance of a colour; Web Content Accessibility Guidelines 2.2.
     fn luminance(color: Color32) -> f64 {
         let linear = |channel: u8| {
             let share = f64::from(channel) / 255.0;

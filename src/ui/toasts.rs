@@ -1,4 +1,4 @@
-//! Messages in the lower right corner of the picture: what happened, until read; what went wrong, until dismissed.
+//! Messages in the lower right corner of the picture: notices stay until read, errors until dismissed.
 
 use egui::{Align2, Area, Context, Frame, Id, Margin, Rect, RichText, ScrollArea, Stroke, vec2};
 
@@ -6,18 +6,18 @@ use super::icons;
 use super::theme::{GRID, palette};
 use crate::editor::Message;
 
-/// Seconds that a message stays that is not an error, those that it takes to read a letter of it, and the most of all.
+/// Lifetime of messages that are not errors, in seconds: the base, the reading time per byte, and the maximum.
 const LIFETIME: f64 = 4.0;
 const PER_LETTER: f64 = 0.06;
 const LONGEST: f64 = 30.0;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
-/// The least width of one that makes room for a window, and what is left free beside that: margins and gaps.
+/// Least width of a message that makes room for a window, and the width left free for margins and gaps, in points.
 const LEAST_WIDTH: f32 = 200.0;
 const BESIDE: f32 = 6.0 * GRID;
-/// Height of the sentence of a message, in parts of that of the window.
+/// Greatest height of a message's sentence, as a share of the window's height.
 const HIGHEST: f32 = 0.25;
-/// Most messages on screen; older ones make room.
+/// Most messages on screen; older ones are removed.
 const MOST: usize = 3;
 
 /// The messages on screen.
@@ -29,12 +29,12 @@ pub struct Toasts {
 #[derive(Debug)]
 struct Toast {
     message: Message,
-    /// Time of `Context` at which it appeared.
+    /// Time at which it appeared, in seconds on the clock of `Context`.
     since: f64,
 }
 
 impl Toast {
-    /// When it goes by itself.
+    /// Time at which it disappears by itself.
     fn end(&self) -> f64 {
         let reading = PER_LETTER * self.message.text.len() as f64;
         self.since + (LIFETIME + reading).min(LONGEST)
@@ -42,7 +42,7 @@ impl Toast {
 }
 
 impl Toasts {
-    /// Puts messages on screen; one that is there already is renewed instead of repeated.
+    /// Shows messages. One that is already shown is renewed; one without text removes those about the same subject.
     pub fn push(&mut self, ctx: &Context, messages: Vec<Message>) {
         let since = ctx.input(|input| input.time);
         for message in messages {
@@ -55,14 +55,14 @@ impl Toasts {
             self.shown.push(Toast { message, since });
         }
         while self.shown.len() > MOST {
-            // An error stays until it is dismissed, if it can; the newest is to be seen.
+            // Errors stay until they are dismissed, if possible, but the newest message is always shown.
             let mut older = self.shown[..MOST].iter();
             let oldest = older.position(|toast| !toast.message.is_error);
             self.shown.remove(oldest.unwrap_or(0));
         }
     }
 
-    /// Draws them at the lower edge of the picture area, beside a window in it if there is room.
+    /// Draws the messages at the lower edge of the picture area, beside `window` if there is room.
     pub fn show(&mut self, ctx: &Context, area: Rect, window: Option<Rect>) {
         let now = ctx.input(|input| input.time);
         self.shown
@@ -78,7 +78,7 @@ impl Toasts {
         let whole = ctx.content_rect();
         let most = WIDTH.min(whole.width() * 0.45);
         let beside = |right: f32| window.map_or(most, |window| right - window.right() - BESIDE);
-        // Where the picture has no room beside the window, the panel at the right has.
+        // If the picture has no room beside the window, the messages may cover the panel on the right.
         let mut corner = area.max;
         if beside(corner.x) < LEAST_WIDTH && beside(whole.right()) >= LEAST_WIDTH {
             corner.x = whole.right();
@@ -108,7 +108,7 @@ impl Toasts {
     }
 }
 
-/// Draws one message as wide as this; true if it was dismissed.
+/// Draws one message of this width. Returns whether it was dismissed.
 fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
     let colors = palette(ui.ctx());
     let (icon, color) = if message.is_error {
@@ -131,7 +131,7 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
     frame
         .show(ui, |ui| {
             ui.set_width(width);
-            // A single line is in the middle of the buttons beside it.
+            // A single line is centred on the buttons beside it.
             let above = (super::theme::ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
             ui.horizontal_top(|ui| {
                 ui.vertical(|ui| {
@@ -153,11 +153,11 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
         .inner
 }
 
-/// The sentence, wrapped; below it, what must keep its columns, such as the line and the caret of
-/// a refused file.
+/// Shows a message: a wrapped sentence and, below it, an excerpt that must keep its columns, such as the line and the
+/// caret of a refused file.
 fn body(ui: &mut egui::Ui, text: &str) {
     let (sentence, excerpt) = text.split_once('\n').unwrap_or((text, ""));
-    // Whatever it quotes, it does not hide the picture.
+    // A long quotation scrolls instead of hiding the picture.
     let height = ui.ctx().content_rect().height() * HIGHEST;
     let area = ScrollArea::vertical()
         .id_salt("sentence")

@@ -1,4 +1,4 @@
-//! What of a picture has to go to the graphics card: only what has changed.
+//! Uploads pictures to the graphics card: only the parts that have changed.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, pos2};
 
 use crate::image::Image;
 
-/// Side of the squares that are compared, in pixels.
+/// Side of the compared squares, in pixels.
 const SIDE: usize = 64;
-/// Share of the picture from which on it is sent whole: one large upload is cheaper than many.
+/// Share of changed pixels above which a picture is sent whole: one large upload is cheaper than many small ones.
 const MOSTLY: f64 = 0.5;
 
-/// A part of a picture.
+/// A rectangle of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PicturePart {
     /// Columns of pixels.
@@ -20,8 +20,8 @@ pub struct PicturePart {
     pub rows: Range<usize>,
 }
 
-/// The parts in which `new` differs from `old`; `None` where it is best sent whole: it has another
-/// size, or has mostly changed.
+/// Returns the parts in which `new` differs from `old`; `None` if `new` should be sent whole, because its size or
+/// most of it has changed.
 pub fn changes(old: &Image, new: &Image) -> Option<Vec<PicturePart>> {
     if (old.width, old.height) != (new.width, new.height) {
         return None;
@@ -61,19 +61,19 @@ fn differ(old: &Image, new: &Image, columns: &Range<usize>, rows: &Range<usize>)
     })
 }
 
-/// Paints all of a texture into a place.
+/// Paints a whole texture into a rectangle.
 pub fn paint(painter: &Painter, texture: &TextureHandle, place: Rect) {
     let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     painter.image(texture.id(), place, all, Color32::WHITE);
 }
 
-/// The whole picture as the graphics card wants it.
+/// Converts a whole picture for the graphics card.
 pub fn whole(image: &Image) -> ColorImage {
     let pixels = image.pixels.iter().copied().map(color);
     ColorImage::new([image.width, image.height], pixels.collect())
 }
 
-/// A part of the picture as the graphics card wants it.
+/// Converts a part of a picture for the graphics card.
 pub fn piece(image: &Image, part: &PicturePart) -> ColorImage {
     let rows = part.rows.clone();
     let pixels = rows.flat_map(|row| {
@@ -86,7 +86,7 @@ pub fn piece(image: &Image, part: &PicturePart) -> ColorImage {
     ColorImage::new([part.columns.len(), part.rows.len()], pixels.collect())
 }
 
-/// What is not traced shows what is below.
+/// Converts a pixel. Pixels that are not traced are transparent.
 fn color([red, green, blue, alpha]: [u8; 4]) -> Color32 {
     Color32::from_rgba_premultiplied(red, green, blue, alpha)
 }

@@ -1,4 +1,4 @@
-//! The picture in the middle: exact pixels, letterboxed.
+//! The picture in the middle of the window: exact pixels, letterboxed.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::scene::{Sampling, Scene};
 use crate::words::counted;
 use crate::worker::Frame;
 
-/// Each picture pixel is a square of screen pixels; a larger picture is averaged, not picked from.
+/// Enlarged picture pixels are sharp squares; a reduced picture is averaged instead of skipping pixels.
 const SHARP: TextureOptions = TextureOptions {
     magnification: TextureFilter::Nearest,
     minification: TextureFilter::Linear,
@@ -25,7 +25,7 @@ const SHARP: TextureOptions = TextureOptions {
     mipmap_mode: None,
 };
 
-/// The newest pictures of each kind, on the graphics card.
+/// The newest picture of each kind, as a texture on the graphics card.
 #[derive(Default)]
 pub struct Display {
     live: Option<Shown>,
@@ -37,17 +37,17 @@ struct Shown {
     texture: TextureHandle,
 }
 
-/// Where the picture goes, and its size in screen pixels.
+/// Position of the picture, and its size in screen pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// On the screen, in points, on whole pixels.
+    /// Position on the screen, in points, aligned to whole pixels.
     pub rect: Rect,
     /// Width and height in pixels.
     pub pixels: (u32, u32),
 }
 
 impl Display {
-    /// Takes up a picture, unless a newer one is shown.
+    /// Takes a picture, unless a newer one is shown.
     pub fn take(&mut self, ctx: &Context, frame: Frame) {
         let place = if frame.is_still {
             &mut self.still
@@ -65,7 +65,7 @@ impl Display {
         } else {
             "live view"
         };
-        // A graphics card takes no more: the file that is written stays whole.
+        // A graphics card limits the size of textures. The file that is written keeps its full size.
         let longest = ctx.input(|input| input.max_texture_side).max(1);
         let side = frame.image.width.max(frame.image.height);
         let step = side.div_ceil(longest).max(1);
@@ -98,20 +98,20 @@ impl Display {
         }
     }
 
-    /// The still picture of this revision and size, if it is there.
+    /// Returns the still picture of this revision and size, if there is one.
     pub fn still(&self, revision: u64, size: (u32, u32)) -> Option<&Frame> {
         let frame = &self.still.as_ref()?.frame;
         let (width, height) = (size.0 as usize, size.1 as usize);
         (frame.revision == revision && frame.full_size == (width, height)).then_some(frame)
     }
 
-    /// The newest live picture.
+    /// Returns the newest live picture.
     pub fn live(&self) -> Option<&Frame> {
         self.live.as_ref().map(|shown| &shown.frame)
     }
 
-    /// Draws the still picture to `to`, as far as that is within the place of pictures; where it is not
-    /// traced, over the newest live one.
+    /// Draws the still picture to `to`, clipped to the place of pictures. If only a part of it is traced, the newest
+    /// live picture is drawn below it.
     pub fn show_still(&self, ui: &mut Ui, place: Place, to: Rect) -> Response {
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         response
@@ -139,14 +139,14 @@ impl Display {
     }
 }
 
-/// A black sky must not run into the dark window.
+/// Draws a border, which separates a black sky from the dark window.
 fn frame(ui: &Ui, place: Place) {
     let line = Stroke::new(1.0, palette(ui.ctx()).line);
     ui.painter()
         .rect_stroke(place.rect, 0, line, StrokeKind::Outside);
 }
 
-/// Says in a corner of the picture what it is, where it is not the live view. Whether that is to be left.
+/// Names the picture in its corner if it is not the live view. Returns whether the user wants to leave it.
 pub fn badge(ui: &mut Ui, place: Place, name: &str) -> bool {
     let corner = place.rect.min + vec2(GRID, GRID);
     let size = vec2(place.rect.width() - 2.0 * GRID, ROW);
@@ -162,8 +162,8 @@ pub fn badge(ui: &mut Ui, place: Place, name: &str) -> bool {
     shown.inner.clicked()
 }
 
-/// A coarse picture has every `step`-th pixel: each is drawn as a square around its own place, so
-/// that nothing moves when the picture becomes finer.
+/// Draws a picture. A coarse one has every `step`-th pixel: each is drawn as a square around its own position, so that
+/// nothing moves when the picture becomes finer.
 fn paint(painter: &Painter, shown: &Shown, rect: Rect) {
     let Frame {
         image,
@@ -182,7 +182,7 @@ fn paint(painter: &Painter, shown: &Shown, rect: Rect) {
     painter.image(shown.texture.id(), rect, part, Color32::WHITE);
 }
 
-/// The largest place of the picture's aspect in `area`, on whole screen pixels.
+/// Returns the largest place with the picture's aspect in `area`, on whole screen pixels.
 pub fn fit(area: Rect, scene: &Scene, pixels_per_point: f32) -> Place {
     let aspect = scene.render.aspect_ratio() as f32;
     let space = area.size() * pixels_per_point;
@@ -202,7 +202,7 @@ pub fn fit(area: Rect, scene: &Scene, pixels_per_point: f32) -> Place {
     }
 }
 
-/// The size of the low-res view: 64 pixels along the longer side.
+/// Returns the size of the low-res view: 64 pixels along the longer side.
 pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
     const LONGER: f32 = 64.0;
     let scale = LONGER / pixels.0.max(pixels.1) as f32;
@@ -210,7 +210,7 @@ pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
     (side(pixels.0), side(pixels.1))
 }
 
-/// What the status line says about a picture.
+/// Describes a picture for the status line.
 pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     let (width, height) = frame.full_size;
     let (thin, low) = (frame.image.width, frame.image.height);

@@ -1,4 +1,4 @@
-//! Why a place of the picture has its colour: the terms of the shading, as numbers.
+//! Explains why a point of the picture has its colour: shows the terms of its shading as numbers.
 
 use std::sync::Arc;
 
@@ -12,43 +12,43 @@ use crate::scene::{Aspect, Scene, format_number};
 use crate::ui::rows::to_bytes;
 use crate::worker::Background;
 
-/// Radius of the ring around the place, in points.
+/// Radius of the ring around the point, in points.
 const RING: f32 = 7.0;
-/// Decimals of the numbers.
+/// Number of decimals shown.
 const DECIMALS: usize = 3;
-/// Scenes of more faces are not planned anew for it.
+/// Scenes with more faces are not planned again just to trace one pixel.
 const MOST_FACES: usize = 500_000;
-/// What a picture of 8 bits may be off by.
+/// Difference up to which an exact colour and that of a picture with 8 bits per channel count as equal.
 const SEEN: f64 = 1.01 / 255.0;
 
-/// Width of the window, and how far it is from the place that it explains, in points.
+/// Width of the window, and its distance from the explained point, in points.
 const WIDTH: f32 = 480.0;
 const AWAY: f32 = 60.0;
 
-/// What is asked, and the answer.
+/// The question and its answer.
 #[derive(Default)]
 pub struct Why {
-    /// The ray, from where and where to, and the scene that it was sent into last.
+    /// Origin and direction of the ray, and the scene that was last asked about.
     asked: Option<(DVec3, DVec3, Arc<Scene>)>,
     answer: Option<Explanation>,
     waiting: Background<Explanation>,
-    /// What the picture has there, once it is known.
+    /// Colour of the picture at that point, once it is known.
     drawn: Option<DVec3>,
-    /// Who finds that out, which takes longer.
+    /// Task that finds that colour, which takes longer than the answer.
     drawing: Background<Option<DVec3>>,
-    /// Whether its window has a place.
+    /// Whether the window has been positioned.
     is_placed: bool,
 }
 
 impl Why {
-    /// Asks what a ray sees, and why. It is found out elsewhere: a mesh may have many faces.
+    /// Asks what a ray sees, and why. Another thread finds the answer, because a mesh may have many faces.
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
         self.asked = Some((origin, direction, Arc::clone(scene)));
         let [seen, traced] = [Arc::clone(scene), Arc::clone(scene)];
         let look = move || explain(&seen, origin, direction);
         self.waiting = Background::start("glint-why", look);
         self.drawn = None;
-        // All of it is planned for a pixel.
+        // For a single pixel, the whole scene is planned.
         if scene.faces() <= MOST_FACES {
             let draw = move || drawn(&traced, origin, direction);
             self.drawing = Background::start("glint-drawn", draw);
@@ -60,24 +60,24 @@ impl Why {
         self.answer.is_some()
     }
 
-    /// Marks the place that the answer is about, if it is on something; `on_screen` finds it.
+    /// Marks the explained point if it is on a surface; `on_screen` projects it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
         if let Some(Explanation::Surface(lit)) = &self.answer
             && let Some(at) = on_screen(lit.point)
         {
             let colors = palette(painter.ctx());
-            // Seen before light and before dark.
+            // Visible on both light and dark ground.
             painter.circle_stroke(at, RING, (3.5, colors.halo));
             painter.circle_stroke(at, RING, (1.5, colors.on_picture));
         }
     }
 
-    /// Forgets the answer.
+    /// Drops the question and its answer, which closes the window.
     pub fn close(&mut self) {
         *self = Self::default();
     }
 
-    /// Asks anew, where the scene is another one by now.
+    /// Asks again if the scene has changed since.
     fn follow(&mut self, scene: &Arc<Scene>) {
         let Some((origin, direction, of)) = &self.asked else {
             return;
@@ -91,7 +91,7 @@ impl Why {
         self.waiting.is_awaited() || self.drawing.is_awaited()
     }
 
-    /// Shows the answer, once it is there, for the scene as it is now; as it was, while something moves.
+    /// Shows the answer once it is known. It follows changes of the scene, but not while something moves.
     pub fn show(&mut self, ctx: &Context, editor: &Editor, aspect: Aspect) {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
@@ -128,7 +128,7 @@ impl Why {
     }
 }
 
-/// Where the window hides nothing of what was asked about.
+/// Returns a position of the window where it does not cover the explained point.
 fn beside_pointer(ctx: &Context) -> Pos2 {
     let (room, at) = (
         ctx.content_rect(),
@@ -140,7 +140,7 @@ fn beside_pointer(ctx: &Context) -> Pos2 {
     Pos2::new(x, room.top() + AWAY)
 }
 
-/// Says so where the picture has something else there.
+/// Shows the colour of the picture if it differs from the explained one.
 fn show_drawn(ui: &mut Ui, explanation: &Explanation, drawn: Option<DVec3>) {
     let is_other = |drawn: &DVec3| (drawn - explanation.color()).abs().max_element() > SEEN;
     let Some(drawn) = drawn.filter(is_other) else {
@@ -238,7 +238,7 @@ fn show_light(ui: &mut Ui, share: &LightTerm) {
     }
 }
 
-/// A term with its colour, and its channels from 0 to 1.
+/// Shows a term with its colour, and its channels from 0 to 1.
 fn term(ui: &mut Ui, words: &str, color: DVec3) {
     Grid::new(ui.next_auto_id()).num_columns(3).show(ui, |ui| {
         swatch(ui, color);
@@ -263,6 +263,6 @@ fn channels(color: DVec3) -> String {
 }
 
 fn number(value: f64) -> String {
-    // Zero has no sign.
+    // Adding zero removes the sign of −0.
     format_number((value * 1e3).round() / 1e3 + 0.0)
 }

@@ -1,4 +1,4 @@
-//! Opening the window, and finding out why that is impossible.
+//! Opens the window, or reports why that is impossible.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -18,30 +18,29 @@ use crate::worker::panic_text;
 
 /// Size of the window when it is first opened, in points.
 const SIZE: [f32; 2] = [1280.0, 800.0];
-/// Below this the panels leave no room for the picture.
+/// Least size of the window, below which the panels leave no room for the picture.
 const MIN_SIZE: [f32; 2] = [760.0, 480.0];
 /// The icon, traced by Glint from `assets/icon.ron`.
 const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
-/// Why the window did not do what it was opened for.
+/// The reason why the window could not do what it was opened for.
 #[derive(Debug, thiserror::Error)]
 pub enum NoWindow {
     /// No window could be opened, for this reason.
     #[error("{0}")]
     Unavailable(String),
-    /// The picture of the window could not be written.
+    /// The screenshot could not be written.
     #[error(transparent)]
     Screenshot(ExportError),
 }
 
-/// Opens the window on a scene file (or the demo) and stays until it is closed, or until a
-/// picture of it is written to `screenshot`. `exports` opens the window of exports first, and what is
-/// named in `select` is selected.
+/// Opens the window on a scene file (or the demo) until it is closed, or until a screenshot of it is written to
+/// `screenshot`. For a screenshot, `exports` opens the window of exports, and `select` names objects and lights to
+/// be selected.
 ///
 /// # Errors
-/// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The library
-/// calls below this report some of that by a panic, which is caught and explained here; a panic
-/// once the window is open passes.
+/// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The libraries used here
+/// report some of these by a panic, which is caught and explained; a panic after the window was opened is passed on.
 pub fn run(
     scene: Option<PathBuf>,
     screenshot: Option<PathBuf>,
@@ -66,8 +65,8 @@ pub fn run(
     }
 }
 
-/// Opens the window on a scene file (or the demo), and closes it when its first traced picture is there: what that
-/// has cost since the given time. `None` if it was closed before.
+/// Opens the window on a scene file (or the demo), closes it once its first traced picture is shown, and returns what
+/// that has cost since the given time; `None` if it was closed before.
 ///
 /// # Errors
 /// [`NoWindow::Unavailable`] as from [`run`].
@@ -130,7 +129,7 @@ fn options(persist_window: bool) -> NativeOptions {
 
 type PanicHook = Box<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync>;
 
-/// Keeps panics quiet until the window is open: they are explained in words instead.
+/// Silences panics until the window is open: they are explained in words instead.
 struct Quiet(Arc<PanicHook>);
 
 impl Quiet {
@@ -153,7 +152,7 @@ impl Drop for Quiet {
     }
 }
 
-/// What the window library says, for people: one line, without the places in its source.
+/// Returns an error message of the window library for people: one line, without positions in its source.
 fn plainly(text: &str) -> String {
     if text.contains("WAYLAND_DISPLAY nor") {
         return "there is no display".to_owned();
