@@ -248,12 +248,13 @@ pub(super) fn nearest(angle: f64, to: f64) -> f64 {
 /// Returns whether both cameras are the same, so that a flight from one to the other is closed.
 fn is_round(first: &Camera, last: &Camera) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9;
+    // Angles half a turn either way are the same.
+    let same_angle = |a: f64, b: f64| near(a.sin(), b.sin()) && near(a.cos(), b.cos());
     let (a, b) = (Orientation::of(first), Orientation::of(last));
     first.position == last.position
-        && near(a.yaw.sin(), b.yaw.sin())
-        && near(a.yaw.cos(), b.yaw.cos())
+        && same_angle(a.yaw, b.yaw)
         && near(a.pitch, b.pitch)
-        && near(a.roll, b.roll)
+        && same_angle(a.roll, b.roll)
         && first.projection_distance == last.projection_distance
         && first.orthographic_height == last.orthographic_height
 }

@@ -33,9 +33,9 @@ impl CoordinateFrame {
         let (middle, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
         let half = half.max_element();
         let visible = scene.visible_objects();
-        let boxes = visible.filter_map(|object| object.shape.bounds());
-        let step = scene.objects.len().div_ceil(LOOKED_AT);
-        let boxes: Vec<_> = boxes.step_by(step).collect();
+        let mut boxes: Vec<_> = visible.filter_map(|object| object.shape.bounds()).collect();
+        let step = boxes.len().div_ceil(LOOKED_AT);
+        boxes = boxes.into_iter().step_by(step).collect();
         let places = boxes.iter().map(|(low, high)| *low * 0.5 + *high * 0.5);
         let lights = scene.lights.iter().take(LOOKED_AT);
         let places: Vec<_> = places.chain(lights.map(|light| light.position)).collect();
@@ -91,6 +91,19 @@ mod tests {
             assert!(frame.extent < 1e5 * size, "{frame:?}");
             assert!(frame.farthest > center.length(), "{frame:?}");
         }
+        // Hidden objects do not thin out those that are examined.
+        let frame = CoordinateFrame::of(&scene);
+        for number in 0..20 * LOOKED_AT {
+            let ball = Sphere {
+                center: DVec3::ZERO,
+                radius: 1.0,
+            };
+            scene.objects.push(Object {
+                visible: false,
+                ..Object::new(format!("Hidden {number}"), "sphere 1", ball)
+            });
+        }
+        assert_eq!(CoordinateFrame::of(&scene), frame);
         scene.objects = [].into_iter().collect();
         assert_eq!(CoordinateFrame::of(&scene), None);
     }

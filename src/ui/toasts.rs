@@ -36,7 +36,7 @@ struct Toast {
 impl Toast {
     /// Time at which it disappears by itself.
     fn end(&self) -> f64 {
-        let reading = PER_LETTER * self.message.text.len() as f64;
+        let reading = PER_LETTER * self.message.text.chars().count() as f64;
         self.since + (LIFETIME + reading).min(LONGEST)
     }
 }
