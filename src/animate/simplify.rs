@@ -16,7 +16,7 @@ const JUMP: f64 = 0.02;
 /// Smallest ratio of a jump to the usual shift.
 const JUMP_FACTOR: f64 = 6.0;
 /// Number of steps on each side from which the usual shift is determined.
-const BESIDE: usize = 6;
+const JUMP_WINDOW: usize = 6;
 
 /// Widths in seconds with which a take may be smoothed, widest first.
 const SMOOTHING: [f64; 6] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04];
@@ -186,7 +186,7 @@ fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
         .map(|(camera, seen)| camera.map_or(0.0, |camera| deviation(&camera, seen)))
         .collect();
     let is_jump = |n: &usize| {
-        let around = n.saturating_sub(BESIDE)..(n + 1 + BESIDE).min(steps.len());
+        let around = n.saturating_sub(JUMP_WINDOW)..(n + 1 + JUMP_WINDOW).min(steps.len());
         let others = around.filter(|other| other != n).map(|other| steps[other]);
         let mut others: Vec<f64> = others.collect();
         others.sort_by(f64::total_cmp);

@@ -172,7 +172,7 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
 /// Returns the name of an unused color pack that is the default one, or a new one in one of these colours. Other
 /// unused ones are left alone: the user may have made them for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
-    let worn = scene.worn_packs();
+    let worn = scene.used_packs();
     let is_new = |pack: &ColorPack| {
         *pack == ColorPack::default() || colors.iter().any(|color| *pack == new_pack(*color))
     };

@@ -30,7 +30,7 @@ pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
         lights: lights.collect(),
         ..Scene::empty()
     };
-    let worn = part.worn_packs();
+    let worn = part.used_packs();
     let chosen: HashSet<usize> = of(ItemKind::Pack).collect();
     let packs = scene.color_packs.iter().enumerate();
     let packs =

@@ -328,7 +328,7 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
     if packs.is_empty() {
         return Ok(());
     }
-    let worn = scene.worn_packs();
+    let worn = scene.used_packs();
     let names = packs
         .iter()
         .map(|&index| scene.color_packs.get_index(index));
@@ -371,7 +371,7 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
             scene
                 .packs_mut()
                 .shift_insert(item.index, to.to_owned(), pack);
-            scene.wear_instead(|name| (name == from).then_some(to));
+            scene.replace_packs(|name| (name == from).then_some(to));
         }
     }
     Ok(())

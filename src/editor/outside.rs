@@ -120,12 +120,12 @@ impl Editor {
     /// Whether the document is the only place that still has the content of a file: its own file is gone or
     /// unreadable, or the file of a mesh in use is unreadable.
     pub(super) fn has_lost_files(&self) -> bool {
-        self.own_file != OwnFile::Whole || !self.scene.shown_of(&self.broken).is_empty()
+        self.own_file != OwnFile::Whole || !self.scene.files_in_use(&self.broken).is_empty()
     }
 
     fn note_broken_mesh(&mut self, full: PathBuf, why: &str) {
         let one = BTreeSet::from([full]);
-        if !self.scene.shown_of(&one).is_empty() {
+        if !self.scene.files_in_use(&one).is_empty() {
             self.broken.extend(one);
             self.tell_broken_mesh(why);
         }
@@ -134,7 +134,7 @@ impl Editor {
     /// Returns a clause that names the meshes that saving has taken into the scene file, because their own files are
     /// gone, broken or in another folder; empty for none.
     pub(super) fn lost_meshes(&self, saved: &Scene) -> String {
-        let broken = self.scene.shown_of(&self.broken).into_iter();
+        let broken = self.scene.files_in_use(&self.broken).into_iter();
         let broken = broken.filter_map(|path| path.file_name()?.to_str());
         let gone = self.scene.gone_mesh_files().into_iter();
         let lost: BTreeSet<&str> = gone.chain(broken).collect();

@@ -43,7 +43,7 @@ fn bare(shown: &Scene) -> Scene {
 
 /// Replaces the names of color packs in use by numbers, and drops unused ones.
 fn number_packs(scene: &mut Scene) {
-    let worn = scene.worn_packs();
+    let worn = scene.used_packs();
     let packs = scene.color_packs.iter();
     let packs = packs.filter(|(name, _)| worn.contains(name.as_str()));
     let numbers: IndexMap<String, String> = packs
@@ -56,7 +56,7 @@ fn number_packs(scene: &mut Scene) {
         .map(|((_, pack), number)| (number.clone(), pack.clone()))
         .collect();
     scene.color_packs = Packs::from(packs);
-    scene.wear_instead(|name| numbers.get(name).map(String::as_str));
+    scene.replace_packs(|name| numbers.get(name).map(String::as_str));
 }
 
 #[cfg(test)]
@@ -82,7 +82,7 @@ mod tests {
                 let packs = scene.packs_mut();
                 let pack = packs.shift_remove("plane").expect("it is there");
                 packs.shift_insert(3, "floor".to_owned(), pack);
-                scene.wear_instead(|name| (name == "plane").then_some("floor"));
+                scene.replace_packs(|name| (name == "plane").then_some("floor"));
             },
         ];
         for (number, change) in unseen.iter().enumerate() {

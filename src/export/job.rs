@@ -121,7 +121,7 @@ fn write_scene(
     let text = if let Some(file) = file.filter(|file| file.is_file()) {
         fs::read(file).map_err(disk)?
     } else {
-        let (header, scene) = (document.header.clone(), document.scene.taken_in());
+        let (header, scene) = (document.header.clone(), document.scene.inlined());
         let text = Document { header, scene }.to_text()?;
         Document::check_length(path, &text)?;
         text.into_bytes()

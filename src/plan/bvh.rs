@@ -8,7 +8,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 pub use super::grouping::{Child, GROUP};
-use super::grouping::{Held, grouped};
+use super::grouping::{WideNode, grouped};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, Vec3};
 
@@ -29,7 +29,7 @@ pub struct Node {
 }
 
 /// Factor by which the surface area of a refitted tree may grow before the tree is built anew.
-const WORN: f64 = 1.2;
+const MAX_SURFACE_GROWTH: f64 = 1.2;
 /// The bit that distinguishes nodes from members.
 const IS_NODE: u32 = 1 << 31;
 
@@ -182,7 +182,7 @@ impl<R: Real> Bvh<R> {
             Child::Member(member) => member,
             Child::Node(node) => node | IS_NODE,
         };
-        let node = |Held { children, count }| Node {
+        let node = |WideNode { children, count }| Node {
             children: children.map(bits),
             count,
             ..Node::empty()
@@ -207,7 +207,7 @@ impl<R: Real> Bvh<R> {
     pub fn refitted(&self, member: impl Fn(usize) -> Member<R>) -> Option<Self> {
         let mut bvh = self.clone();
         bvh.refit(member);
-        (bvh.surface() <= self.built * WORN).then_some(bvh)
+        (bvh.surface() <= self.built * MAX_SURFACE_GROWTH).then_some(bvh)
     }
 
     /// Half of the total surface area of all boxes, to which the number of boxes that a random ray hits is

@@ -125,7 +125,8 @@ pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
     pieces.iter().enumerate().any(|(index, piece)| {
         let mut others = pieces[index + 1..].iter();
         others.any(|other| {
-            piece.is_beside(other, MIN_GAP_OF_PIECES * extent) && !piece.coincides(other, centre)
+            piece.is_layered_with(other, MIN_GAP_OF_PIECES * extent)
+                && !piece.coincides(other, centre)
         })
     })
 }

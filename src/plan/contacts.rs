@@ -83,19 +83,19 @@ pub struct Tie {
     /// The numbers of its primitives.
     pub numbers: Range<usize>,
     /// The earlier objects; of those that a ray hits there, the first is seen.
-    pub over: Others,
+    pub over: RankedObjects,
 }
 
 /// An ordered set of objects, searched by primitive number: many may share a surface with one object.
 #[derive(Clone, Debug)]
-pub struct Others {
+pub struct RankedObjects {
     /// The primitive numbers of each object and its rank in the order, sorted by number.
     ranked: Vec<(Range<usize>, usize)>,
     /// The number of entries that are not in the tree; they come first.
     listed: usize,
 }
 
-impl Others {
+impl RankedObjects {
     /// Creates the set from the primitive numbers of each object, in order; numbers below `listed` are not in the
     /// tree.
     pub fn new(numbers: Vec<Range<usize>>, listed: usize) -> Self {
@@ -161,7 +161,7 @@ impl Contacts {
         for (index, Object { shape, .. }) in objects.filter(|(_, object)| object.visible) {
             if let Some(piece) = shape.plane_piece() {
                 let holds_eye = piece.height(eye) == 0.0;
-                if holds_eye && (!is_parallel || piece.is_across(direction)) {
+                if holds_eye && (!is_parallel || piece.is_perpendicular_to(direction)) {
                     self.edge_on.push(index);
                 }
             } else if !is_parallel
@@ -188,7 +188,7 @@ impl Contacts {
     }
 
     /// Returns whether the number that an object gets in the lists is needed.
-    pub fn is_told(&self, index: usize) -> bool {
+    pub fn needs_number(&self, index: usize) -> bool {
         self.apart.contains(&index) || self.sharing.contains(&index)
     }
 
@@ -258,14 +258,14 @@ mod tests {
 
     #[test]
     fn others_are_found_by_their_numbers_in_whatever_order_they_are() {
-        let others = Others::new(vec![40..60, 7..8, 20..40, 3..4], 20);
+        let others = RankedObjects::new(vec![40..60, 7..8, 20..40, 3..4], 20);
         let ranks = [50, 7, 20, 39, 3].map(|number| others.rank_of(number));
         assert_eq!(ranks, [Some(0), Some(1), Some(2), Some(2), Some(3)]);
         for none in [0, 4, 8, 19, 60] {
             assert_eq!(others.rank_of(none), None, "{none}");
         }
         assert!(others.listed().eq([3, 7]) && others.are_in_tree());
-        assert!(!Others::new(vec![1..2, 5..6], 20).are_in_tree());
+        assert!(!RankedObjects::new(vec![1..2, 5..6], 20).are_in_tree());
     }
 
     #[test]

@@ -95,7 +95,11 @@ impl Planner {
             return;
         }
         let (mut rounded, mut packed) = (single.meshes(), double.meshes());
-        for object in scene.objects.iter().filter(|object| is_planted(object)) {
+        for object in scene
+            .objects
+            .iter()
+            .filter(|object| belongs_in_tree(object))
+        {
             if let Shape::Mesh(mesh) = &object.shape {
                 rounded.take_over(&packed.ready(mesh));
             }
@@ -280,7 +284,7 @@ impl<R: Real> Geometry<R> {
             projector: None,
         };
         for (index, object) in scene.objects.iter().enumerate() {
-            if !is_planted(object) || apart.contains(&index) {
+            if !belongs_in_tree(object) || apart.contains(&index) {
                 continue;
             }
             let material = material_number(scene, &object.color_pack);
@@ -390,7 +394,7 @@ impl<R: Real> Geometry<R> {
 }
 
 /// Returns whether an object belongs into the tree, if the scene has one: if it is bounded and visible.
-pub fn is_planted(object: &Object) -> bool {
+pub fn belongs_in_tree(object: &Object) -> bool {
     object.visible && object.shape.bounds().is_some()
 }
 

@@ -39,14 +39,14 @@ pub enum Child {
 
 /// The content of a node.
 #[derive(Clone, Copy, Debug)]
-pub struct Held {
+pub struct WideNode {
     /// The children, in the first [`Self::count`] places.
     pub children: [Child; GROUP],
     /// The number of children.
     pub count: usize,
 }
 
-impl Default for Held {
+impl Default for WideNode {
     fn default() -> Self {
         Self {
             children: [Child::Member(0); GROUP],
@@ -55,7 +55,7 @@ impl Default for Held {
     }
 }
 
-impl Held {
+impl WideNode {
     fn push(&mut self, child: Child) {
         self.children[self.count] = child;
         self.count += 1;
@@ -64,7 +64,7 @@ impl Held {
 
 /// Builds the nodes of a tree over `boxes`; their indices are their numbers. The root comes first, and each node
 /// before its child nodes.
-pub fn grouped(boxes: &[Aabb]) -> Vec<Held> {
+pub fn grouped(boxes: &[Aabb]) -> Vec<WideNode> {
     if boxes.is_empty() {
         return Vec::new();
     }
@@ -74,7 +74,11 @@ pub fn grouped(boxes: &[Aabb]) -> Vec<Held> {
 }
 
 /// Builds the tree over some of the boxes; splits them into parts first if there are more than `most`.
-fn groups_of(boxes: &[Aabb], members: &mut [u32], (most, deepest): (usize, usize)) -> Vec<Held> {
+fn groups_of(
+    boxes: &[Aabb],
+    members: &mut [u32],
+    (most, deepest): (usize, usize),
+) -> Vec<WideNode> {
     if members.len() > most {
         let parts = in_parts(boxes, members).into_par_iter();
         let trees = parts.map(|part| groups_of(boxes, part, (most, deepest - 1)));
@@ -108,18 +112,18 @@ fn in_parts<'a>(boxes: &[Aabb], members: &'a mut [u32]) -> Vec<&'a mut [u32]> {
 }
 
 /// Joins trees under a new root.
-fn under_one_root(trees: Vec<Vec<Held>>) -> Vec<Held> {
-    let mut groups = vec![Held::default()];
+fn under_one_root(trees: Vec<Vec<WideNode>>) -> Vec<WideNode> {
+    let mut groups = vec![WideNode::default()];
     for tree in trees {
         let first = groups.len() as u32;
         groups[0].push(Child::Node(first));
-        groups.extend(tree.into_iter().map(|mut held| {
-            for child in &mut held.children[..held.count] {
-                if let Child::Node(node) = child {
-                    *node += first;
+        groups.extend(tree.into_iter().map(|mut node| {
+            for child in &mut node.children[..node.count] {
+                if let Child::Node(index) = child {
+                    *index += first;
                 }
             }
-            held
+            node
         }));
     }
     groups
@@ -178,14 +182,14 @@ fn tell_apart(boxes: &mut [Aabb]) {
 /// How a pair (a node of the binary tree) is distributed if it may take up 1, 2, … [`GROUP`] places of a wide node:
 /// 0 if it stays one box, otherwise the number of places for its first half. With only one place it always is one
 /// box, so that entry holds how the wide node of the pair itself is distributed.
-type Shares = [u8; GROUP];
+type Splits = [u8; GROUP];
 
-/// The [`Shares`] of all pairs that have halves. Halves are stored side by side after the root, so their position
+/// The [`Splits`] of all pairs that have halves. Halves are stored side by side after the root, so their position
 /// identifies the pair.
-struct AllShares(Vec<Shares>);
+struct AllSplits(Vec<Splits>);
 
-impl AllShares {
-    fn of(&self, pairs: &Bvh2, pair: usize) -> &Shares {
+impl AllSplits {
+    fn of(&self, pairs: &Bvh2, pair: usize) -> &Splits {
         &self.0[pairs.nodes[pair].first_index as usize / 2]
     }
 }
@@ -193,7 +197,7 @@ impl AllShares {
 /// Distributes the places of wide nodes so that the total surface area of their boxes is smallest: random rays hit
 /// a box in proportion to its surface area. Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs
 /// through compressed wide BVHs", HPG 2017, ch. 3; members cost the same wherever they are held.
-fn shared_out(pairs: &Bvh2) -> AllShares {
+fn distribute_places(pairs: &Bvh2) -> AllSplits {
     let mut shares = vec![[0; GROUP]; pairs.nodes.len().div_ceil(2)];
     let mut waiting = vec![(0, false)];
     // Total surface area of the wide nodes in a pair, by the number of places it may take up.
@@ -211,7 +215,7 @@ fn shared_out(pairs: &Bvh2) -> AllShares {
             surfaces.push(surface);
         }
     }
-    AllShares(shares)
+    AllSplits(shares)
 }
 
 /// Returns the total surface areas for a pair with this surface area and these halves, and how it is distributed.
@@ -219,7 +223,7 @@ fn shared_among(
     surface: f32,
     first: &[f32; GROUP],
     second: &[f32; GROUP],
-) -> ([f32; GROUP], Shares) {
+) -> ([f32; GROUP], Splits) {
     let (mut surfaces, mut shares) = ([f32::INFINITY; GROUP], [0; GROUP]);
     for places in 1..GROUP {
         for taken in 0..places {
@@ -242,8 +246,8 @@ fn shared_among(
 }
 
 /// Turns pairs into wide nodes, from the root down; `None` if the tree becomes too deep.
-fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<Held>> {
-    let shares = shared_out(pairs);
+fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<WideNode>> {
+    let shares = distribute_places(pairs);
     // The pair and the depth of each wide node; they are listed first, so that no more memory is allocated than
     // needed.
     let mut tops = vec![(0, 1)];
@@ -252,17 +256,17 @@ fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<Held>> {
         if depth > deepest {
             return None;
         }
-        let held = opened(pairs, &shares, pair).into_iter();
-        let halved = held.filter(|&held| !pairs.nodes[held].is_leaf());
-        tops.extend(halved.map(|held| (held, depth + 1)));
+        let inner = node_boxes(pairs, &shares, pair).into_iter();
+        let inner = inner.filter(|&pair| !pairs.nodes[pair].is_leaf());
+        tops.extend(inner.map(|pair| (pair, depth + 1)));
         at += 1;
     }
     let mut groups = Vec::with_capacity(tops.len());
     let mut next = 0;
     for (pair, _) in tops {
-        let mut group = Held::default();
-        for held in opened(pairs, &shares, pair) {
-            let half = &pairs.nodes[held];
+        let mut group = WideNode::default();
+        for pair in node_boxes(pairs, &shares, pair) {
+            let half = &pairs.nodes[pair];
             group.push(if half.is_leaf() {
                 Child::Member(pairs.primitive_indices[half.first_index as usize])
             } else {
@@ -276,8 +280,8 @@ fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<Held>> {
 }
 
 /// The pairs that become the boxes of the wide node of `pair`.
-fn opened(pairs: &Bvh2, shares: &AllShares, pair: usize) -> Vec<usize> {
-    let mut held = Vec::with_capacity(GROUP);
+fn node_boxes(pairs: &Bvh2, shares: &AllSplits, pair: usize) -> Vec<usize> {
+    let mut boxes = Vec::with_capacity(GROUP);
     let halves = |pair: usize, places: usize, share: u8| {
         let (first, taken) = (pairs.nodes[pair].first_index as usize, usize::from(share));
         [(first + 1, places - taken), (first, taken)]
@@ -295,24 +299,24 @@ fn opened(pairs: &Bvh2, shares: &AllShares, pair: usize) -> Vec<usize> {
             shares.of(pairs, pair)[places - 1]
         };
         if share == 0 {
-            held.push(pair);
+            boxes.push(pair);
         } else {
             waiting.extend(halves(pair, places, share));
         }
     }
-    held
+    boxes
 }
 
 /// Groups neighbours in a list into nodes: only as good as the order of the list, but never deep.
-fn bundled(order: &[u32]) -> Vec<Held> {
-    let mut groups = vec![Held::default()];
+fn bundled(order: &[u32]) -> Vec<WideNode> {
+    let mut groups = vec![WideNode::default()];
     let mut waiting = VecDeque::from([(0, order)]);
     while let Some((index, members)) = waiting.pop_front() {
         for part in members.chunks(members.len().div_ceil(GROUP)) {
             let child = if let [member] = *part {
                 Child::Member(member)
             } else {
-                groups.push(Held::default());
+                groups.push(WideNode::default());
                 waiting.push_back((groups.len() - 1, part));
                 Child::Node(groups.len() as u32 - 1)
             };
@@ -327,11 +331,11 @@ mod tests {
     use super::*;
 
     /// How often each member is held, and the depth of the deepest node.
-    fn found(groups: &[Held], length: usize) -> (Vec<u32>, usize) {
+    fn found(groups: &[WideNode], length: usize) -> (Vec<u32>, usize) {
         let (mut found, mut deepest) = (vec![0; length], 0);
         let mut waiting = vec![(0, 1)];
         while let Some((index, depth)) = waiting.pop() {
-            let group: &Held = &groups[index as usize];
+            let group: &WideNode = &groups[index as usize];
             deepest = deepest.max(depth);
             for child in &group.children[..group.count] {
                 match *child {

@@ -93,7 +93,7 @@ impl Place {
         piece.height(self.point) == 0.0
             && self
                 .direction
-                .is_none_or(|direction| piece.is_across(direction))
+                .is_none_or(|direction| piece.is_perpendicular_to(direction))
     }
 }
 

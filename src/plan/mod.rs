@@ -70,7 +70,7 @@ mod needs;
 
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
-pub use contacts::Others;
+pub use contacts::RankedObjects;
 pub use crossed::tests_spared;
 pub use culled_faces::CulledFaces;
 pub use flats::AskFlat;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::geometry::{LARGEST_LIST, MOST_LISTED_TRIANGLES, PlanCache, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
-use super::precision::{is_filtered, is_fine, is_too_much_twice, needs_double};
+use super::precision::{allows_finer_features, is_filtered, is_too_large_for_both, needs_double};
 use super::request::RenderRequest;
 use crate::scene::{Accelerator, HighlightMethod, Object, Precision, Sampling, Scene};
 use crate::simd::Exponent;
@@ -72,7 +72,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
             "something is too far, too small or too close for single precision, or the lens is too long",
             "nothing: the picture would show the rounding",
         ),
-        Precision::Auto if is_too_much_twice(scene, request) => need(
+        Precision::Auto if is_too_large_for_both(scene, request) => need(
             rule,
             double,
             "there is too much to keep all of it in both, to trace again where rounding may decide",
@@ -90,7 +90,7 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
                     "time: a vector holds twice as many numbers, and what rounding decides on edges is not traced again",
                 )
             };
-            let why = if is_fine(scene, request) {
+            let why = if allows_finer_features(scene, request) {
                 "nothing is farther than 500,000 of its radii or smaller than 1/1,000,000 of the scene"
             } else {
                 "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene"

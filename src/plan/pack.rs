@@ -9,7 +9,9 @@ use super::balls::{Balls, balls_of};
 use super::contacts::{Contacts, Tie};
 use super::culled_faces::CulledFaces;
 use super::flats::Flats;
-use super::geometry::{Geometry, PlanCache, is_planted, is_tree, material_number, measure_loose};
+use super::geometry::{
+    Geometry, PlanCache, belongs_in_tree, is_tree, material_number, measure_loose,
+};
 use super::hit_order::HitOrder;
 use super::lights::{PointLight, pack_lights};
 use super::materials::{Material, linear, pack_materials};
@@ -248,8 +250,8 @@ impl<R: Real> Plan<R> {
         }
         let apart = contacts.apart();
         let is_listed = |index: usize, object: &Object| {
-            let is_planted = self.geometry.is_some() && is_planted(object);
-            object.visible && (!is_planted || apart.contains(&index))
+            let belongs_in_tree = self.geometry.is_some() && belongs_in_tree(object);
+            object.visible && (!belongs_in_tree || apart.contains(&index))
         };
         let objects = scene.objects.iter().enumerate();
         let listed: Vec<_> = objects
@@ -264,7 +266,7 @@ impl<R: Real> Plan<R> {
             let packed = self.push(&object.shape, material, &packing);
             found.extend(
                 packed
-                    .filter(|_| contacts.is_told(index))
+                    .filter(|_| contacts.needs_number(index))
                     .map(|packed| (index, packed)),
             );
         }

@@ -47,7 +47,7 @@ const MOST_UNFILTERED: u64 = 10_000_000;
 /// Returns whether a picture is traced in double precision.
 pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
     let is_needed = || match request.precision {
-        Precision::Auto => needs_double(scene, request) || is_too_much_twice(scene, request),
+        Precision::Auto => needs_double(scene, request) || is_too_large_for_both(scene, request),
         Precision::Single => false,
         Precision::Double => true,
     };
@@ -62,13 +62,13 @@ pub fn is_filtered(scene: &Scene, request: &RenderRequest) -> bool {
 
 /// Returns whether features may be smaller and farther away because doubtful samples are traced again. Independent
 /// of the picture's size, since otherwise parts of a picture would differ from the whole.
-pub fn is_fine(scene: &Scene, request: &RenderRequest) -> bool {
+pub fn allows_finer_features(scene: &Scene, request: &RenderRequest) -> bool {
     is_filtered(scene, request) && has_many_edges(scene)
 }
 
 /// Returns whether a scene has too many primitives for both precisions, so that all of it is traced in double
 /// precision.
-pub fn is_too_much_twice(scene: &Scene, request: &RenderRequest) -> bool {
+pub fn is_too_large_for_both(scene: &Scene, request: &RenderRequest) -> bool {
     is_rounding_seen(scene, request) && primitives(scene) > MOST_FILTERED
 }
 
@@ -117,16 +117,22 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
-    let is_fine = is_fine(scene, request);
+    let allows_finer_features = allows_finer_features(scene, request);
     // Parallel rays start from a window, not from a point.
     let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
     let point = Some(eye).filter(|_| is_perspective);
     let size = (high - low).length();
     // Samples that search for an edge inside a pixel are not filtered, and layers would show in all of them.
-    if has_layers(scene, (centre, extent)) || !is_fine && is_at_border(scene, point, size) {
+    if has_layers(scene, (centre, extent))
+        || !allows_finer_features && is_at_border(scene, point, size)
+    {
         return true;
     }
-    let smaller = if is_fine { SMALLER_WHEN_FILTERED } else { 1.0 };
+    let smaller = if allows_finer_features {
+        SMALLER_WHEN_FILTERED
+    } else {
+        1.0
+    };
     let wall = if scene.lights.is_empty() {
         0.0
     } else {

@@ -15,7 +15,7 @@ const MOST_AROUND: usize = 1024;
 /// Margin by which the cosine between two faces must exceed that of the limiting angle for them to be smooth:
 /// several roundings of single precision, in which files store corners, so that faces that meet at exactly that
 /// angle are never smoothed because of rounding.
-const JUST: f64 = 4e-6;
+const COSINE_MARGIN: f64 = 4e-6;
 
 /// Returns the normals at the corners of each triangle: the mean of the normals of all faces there that differ from
 /// the triangle's own by less than `degrees`, weighted by their angles at the corner.
@@ -23,7 +23,7 @@ const JUST: f64 = 4e-6;
 /// Thürmer and Wüthrich, "Computing vertex normals from polygonal facets", Journal of Graphics Tools 3(1),
 /// 1998.
 pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<CornerNormals<f64>> {
-    let least_cosine = degrees.to_radians().cos() + JUST;
+    let least_cosine = degrees.to_radians().cos() + COSINE_MARGIN;
     let numbers = number_corners(triangles);
     let around = Around::of(&numbers);
     let turned = turned_faces(&numbers, &around);

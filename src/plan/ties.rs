@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::contacts::{Contacts, Others, Tie};
+use super::contacts::{Contacts, RankedObjects, Tie};
 use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
@@ -50,7 +50,7 @@ impl<R: Real> Plan<R> {
         let first_in_tree = self.primitives.len();
         let ties = ties.into_iter().map(|(numbers, over)| Tie {
             numbers,
-            over: Others::new(over, first_in_tree),
+            over: RankedObjects::new(over, first_in_tree),
         });
         let mut ties: Vec<Tie> = ties.collect();
         ties.sort_by_key(|tie| tie.numbers.start);

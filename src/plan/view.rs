@@ -10,7 +10,7 @@ use crate::simd::{Real, SimdFloat, Vec3};
 /// walls run along pixel sides, every sample would lie on an edge, where rounding decides what it sees. The shift
 /// changes a picture by an eighth of a level at most. It runs along no slope that people draw, and it has few bits,
 /// so that adding it to a position is exact.
-const ASIDE: (f64, f64) = (4.0 / 8192.0, 3.0 / 8192.0);
+const SAMPLE_SHIFT: (f64, f64) = (4.0 / 8192.0, 3.0 / 8192.0);
 
 /// The camera prepared for tracing: turns pixel positions into rays with unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct View<R> {
     /// (orthographic).
     forward: Vec3<R>,
     projection: Projection,
-    /// Half the width and height in pixels, less [`ASIDE`].
+    /// Half the width and height in pixels, less [`SAMPLE_SHIFT`].
     half: (R, R),
     /// Image heights per pixel.
     pixel: R,
@@ -45,7 +45,7 @@ impl<R: Real> View<R> {
         };
         let (width, height) = (f64::from(request.width), f64::from(request.height));
         let aside = match request.sampling {
-            Sampling::Adaptive { .. } => ASIDE,
+            Sampling::Adaptive { .. } => SAMPLE_SHIFT,
             _ => (0.0, 0.0),
         };
         let half = (width / 2.0 - aside.0, height / 2.0 - aside.1);

@@ -103,7 +103,7 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
     /// The width with which it blocks light from these directions: zero where it may have been left out as an
     /// occluder.
     #[inline(always)]
-    fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
+    fn blocking_width<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         directions.x.like(self.thickness())
     }
 

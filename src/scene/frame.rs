@@ -8,7 +8,7 @@ use super::whole::Scene;
 /// Largest ratio between the half size of the scene and the median reach of its objects for which the middle of the
 /// scene is the origin. The tolerance for coincident surfaces is a share of the coordinates: with an origin midway
 /// between a table and the moon, everything on the table would count as in its plane.
-const FAR: f64 = 1e3;
+const MAX_SIZE_RATIO: f64 = 1e3;
 
 /// Number of objects that are examined, evenly spread over the list, if there are more.
 const LOOKED_AT: usize = 1000;
@@ -43,7 +43,7 @@ impl CoordinateFrame {
         let centre = DVec3::new(median_along(0)?, median_along(1)?, median_along(2)?);
         let reach =
             |(low, high): &(DVec3, DVec3)| (*high - centre).max(centre - *low).max_element();
-        let near = FAR * median(boxes.iter().map(reach))?;
+        let near = MAX_SIZE_RATIO * median(boxes.iter().map(reach))?;
         Some(if half <= near {
             Self {
                 centre: middle,

@@ -105,7 +105,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
             }
         }
     }
-    let worn = scene.worn_packs();
+    let worn = scene.used_packs();
     // In an empty scene, the first object added will use a color pack.
     let packs = scene.color_packs.iter().enumerate();
     for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {

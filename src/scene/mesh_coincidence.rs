@@ -115,7 +115,7 @@ struct BoxedSurface<'a> {
     index: usize,
     shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
-    /// Cached result of [`Self::outer_side`]: many objects may touch one.
+    /// Cached result of [`Self::normal_orientation`]: many objects may touch one.
     side: OnceCell<Option<f64>>,
 }
 
@@ -142,7 +142,7 @@ impl<'a> BoxedSurface<'a> {
 
     /// Returns whether the normals of the faces point outwards (1) or inwards (-1); `None` if the object is not a
     /// solid, or has too many faces to test.
-    fn outer_side(&self) -> Option<f64> {
+    fn normal_orientation(&self) -> Option<f64> {
         *self.side.get_or_init(|| self.find_outer_side())
     }
 
@@ -222,7 +222,7 @@ fn on_plane(
         transform.transform_point3(low + (high - low) * DVec3::from(way))
     });
     let reach = corners.map(|corner| (corner - centre).abs().max_element());
-    let little = plane.height_in(centre, reach.fold(0.0, f64::max));
+    let little = plane.plane_tolerance(centre, reach.fold(0.0, f64::max));
     // Extent of the box to each side of its middle, along the plane's normal.
     let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
     let across = (transform.matrix3.transpose() * plane.normal)
@@ -289,7 +289,7 @@ impl Search {
         // If no pair is found here, all have been examined. This has its own budget, so as not to use up that of
         // other objects.
         std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
-        let sides = one.outer_side().zip(other.outer_side());
+        let sides = one.normal_orientation().zip(other.normal_orientation());
         let are_apart = sides.is_some_and(|(side, other)| {
             let is_one_way = |cosine: f64| cosine * side * other > 0.0;
             !self.either(&pieces, &is_one_way) && self.pairs > 0

@@ -17,7 +17,7 @@ pub struct Object {
     /// Geometry, including position, size and orientation.
     pub shape: Shape,
     /// If false, the object is excluded from the picture entirely: it casts no shadow and has no reflection.
-    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    #[serde(default = "default_true", skip_serializing_if = "is_true")]
     pub visible: bool,
     /// Name of the group that the outliner lists it in; empty for none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -70,7 +70,7 @@ pub struct Light {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub marker: Option<LightObj>,
     /// If false, the light is switched off and its marker is hidden.
-    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    #[serde(default = "default_true", skip_serializing_if = "is_true")]
     pub visible: bool,
 }
 
@@ -100,7 +100,7 @@ pub fn default_intensity() -> f64 {
 }
 
 /// Default of the boolean fields that are on unless the file says otherwise.
-pub fn yes() -> bool {
+pub fn default_true() -> bool {
     true
 }
 

@@ -6,7 +6,7 @@ use super::whole::Scene;
 
 impl Scene {
     /// Returns the names of the color packs that objects and markers use.
-    pub fn worn_packs(&self) -> HashSet<&str> {
+    pub fn used_packs(&self) -> HashSet<&str> {
         let markers = self.lights.iter().filter_map(|light| light.marker.as_ref());
         let markers = markers.map(|marker| marker.color_pack.as_str());
         let objects = self.objects.iter().map(|object| object.color_pack.as_str());
@@ -14,7 +14,7 @@ impl Scene {
     }
 
     /// Replaces the color pack of every object and marker for which `instead` returns a name.
-    pub fn wear_instead<'a>(&mut self, instead: impl Fn(&str) -> Option<&'a str>) {
+    pub fn replace_packs<'a>(&mut self, instead: impl Fn(&str) -> Option<&'a str>) {
         // Element by element: unchanged elements stay shared with earlier undo states.
         for index in 0..self.objects.len() {
             if let Some(name) = instead(&self.objects[index].color_pack) {
@@ -63,6 +63,6 @@ impl Scene {
         }
         self.packs_mut()
             .retain(|name, _| !instead.contains_key(name));
-        self.wear_instead(|name| instead.get(name).map(String::as_str));
+        self.replace_packs(|name| instead.get(name).map(String::as_str));
     }
 }

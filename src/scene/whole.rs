@@ -17,7 +17,7 @@ use super::camera::{Bookmark, Camera};
 use super::list::List;
 use super::material::{ColorPack, Packs};
 use super::notation;
-use super::object::{Light, LightObj, Object, default_intensity, yes};
+use super::object::{Light, LightObj, Object, default_intensity, default_true};
 use super::render::Render;
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 
@@ -40,7 +40,7 @@ pub struct Scene {
     #[serde(default = "default_ambient_intensity", with = "notation::number")]
     pub ambient_intensity: f64,
     /// Whether the markers of the lights are part of the picture.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     pub light_visualization: bool,
     /// The viewpoint of the picture.
     #[serde(default)]
@@ -181,7 +181,7 @@ impl Scene {
         self.with_sources(|source| {
             let (own, path) = source.file()?;
             let is_lost = gone.contains(path) || elsewhere.contains(own);
-            is_lost.then(|| source.taken_in()).flatten()
+            is_lost.then(|| source.inlined()).flatten()
         })
     }
 
@@ -224,12 +224,12 @@ impl Scene {
         self.with_sources(|source| {
             let (folder, path) = source.file()?;
             let is_meant = files.contains(&folder.join(path));
-            is_meant.then(|| source.taken_in()).flatten()
+            is_meant.then(|| source.inlined()).flatten()
         })
     }
 
     /// Returns those of `files` from which some mesh was read.
-    pub fn shown_of<'f>(&self, files: &'f BTreeSet<PathBuf>) -> BTreeSet<&'f Path> {
+    pub fn files_in_use<'f>(&self, files: &'f BTreeSet<PathBuf>) -> BTreeSet<&'f Path> {
         if files.is_empty() {
             return BTreeSet::new();
         }
@@ -273,8 +273,8 @@ impl Scene {
 
     /// Returns the scene with all meshes inline, so that it needs no other files.
     #[must_use]
-    pub fn taken_in(&self) -> Self {
-        self.with_sources(MeshSource::taken_in)
+    pub fn inlined(&self) -> Self {
+        self.with_sources(MeshSource::inlined)
     }
 
     /// Returns the scene with a short identifier in place of the triangles of each mesh, different for different

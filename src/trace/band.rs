@@ -137,9 +137,12 @@ impl<R: SimdReal> Band<'_, R> {
                 }
                 Sampling::Adaptive { contrast, depth } => {
                     let limits = Limits::new(contrast, depth);
-                    let BandMessages { messages, those } = self.messages;
-                    if let Some(those) = those {
-                        let looked = (limits, messages, those);
+                    let BandMessages {
+                        messages,
+                        only_pixels,
+                    } = self.messages;
+                    if let Some(only_pixels) = only_pixels {
+                        let looked = (limits, messages, only_pixels);
                         sampler.notified_pixels(&mut engine, in_tile, &tile, looked, colors);
                         if engine.is_stopped() {
                             return None;

@@ -12,7 +12,7 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 pub struct Beam<R> {
     origin: Vec3<R>,
     /// Radius of the ball in which the rays start.
-    spread: R,
+    start_radius: R,
     axis: Vec3<R>,
     /// Sine of the angle between the axis and the outermost rays, which is less than 90°.
     sine: R,
@@ -31,7 +31,7 @@ impl<R: Real> Beam<R> {
         let sine = radius / length;
         (sine < 1.0).then(|| Self {
             origin: Vec3::from_dvec3(from),
-            spread: R::ZERO,
+            start_radius: R::ZERO,
             axis: Vec3::from_dvec3(towards * (1.0 / length)),
             sine: R::from_f64(sine),
             cosine: R::from_f64((1.0 - sine * sine).sqrt()),
@@ -46,7 +46,7 @@ impl<R: Real> Beam<R> {
         let cosine = 1.0 - chord * chord * 0.5;
         (cosine > 0.0).then(|| Self {
             origin: Vec3::from_dvec3(ball.center),
-            spread: R::from_f64(ball.radius),
+            start_radius: R::from_f64(ball.radius),
             axis: Vec3::from_dvec3(axis),
             sine: R::from_f64((1.0 - cosine * cosine).sqrt()),
             cosine: R::from_f64(cosine),
@@ -60,7 +60,7 @@ impl<R: Real> Beam<R> {
     pub fn widened(self, by: R, spread: R) -> Option<Self> {
         // sin(a + b) ≤ sin a + b, cos(a + b) ≥ cos a - b.
         (spread < self.cosine).then(|| Self {
-            spread: self.spread + by,
+            start_radius: self.start_radius + by,
             sine: (self.sine + spread).min(R::ONE),
             cosine: self.cosine - spread,
             ..self
@@ -69,14 +69,14 @@ impl<R: Real> Beam<R> {
 
     /// Upper bound of the distance between the start of any ray and any point within `radius` of `center`.
     pub fn distance(&self, center: Vec3<R>, radius: R) -> R {
-        (center - self.origin).length() + radius + self.spread
+        (center - self.origin).length() + radius + self.start_radius
     }
 
     /// Returns whether any ray may reach the far side of the plane `normal` · p = `offset`.
     pub fn crosses(&self, normal: Vec3<R>, offset: R) -> bool {
         let height = normal.dot(self.origin) - offset;
         let slack = R::from_f64(FAR_CAUTION) * (self.origin.max_abs() + height.abs());
-        if height.abs() <= self.spread + slack {
+        if height.abs() <= self.start_radius + slack {
             return true;
         }
         let away = if height > R::ZERO { normal } else { -normal };
@@ -102,7 +102,7 @@ impl<R: Real> Beam<R> {
         let along = q.dot(axis);
         let across = q - axis * along;
         let height = across.length();
-        let radius = (L::load(token, &balls.radius[first..]) + along.like(self.spread))
+        let radius = (L::load(token, &balls.radius[first..]) + along.like(self.start_radius))
             * along.like_f64(1.0 + CAUTION);
         let room = radius + (along.abs() + height) * along.like_f64(FAR_CAUTION);
         let outside = height * along.like(self.cosine) - along * along.like(self.sine);

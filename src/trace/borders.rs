@@ -26,7 +26,7 @@ pub struct Side {
     pub ends: [[u16; 2]; 2],
     /// Indices of the two adjacent pixels, each with the bit of this side in it; `None` for one that needs no
     /// messages from it.
-    pub listening: [Option<(usize, u8)>; 2],
+    pub notified_pixels: [Option<(usize, u8)>; 2],
 }
 
 /// A pixel adjacent to a side.
@@ -117,8 +117,8 @@ impl PixelSides {
         };
         let listens =
             |index: usize, side: u8| (self.known[index] & side == 0).then_some((index, side));
-        let listening = [listens(before, end), listens(behind, start)];
-        if listening == [None; 2] {
+        let notified_pixels = [listens(before, end), listens(behind, start)];
+        if notified_pixels == [None; 2] {
             return None;
         }
         let (left, top) = (x / step * step, y / step * step);
@@ -129,7 +129,7 @@ impl PixelSides {
         };
         Some(Side {
             ends: [[left, top], other],
-            listening,
+            notified_pixels,
         })
     }
 
@@ -185,9 +185,9 @@ mod tests {
         messages.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
         let mut borders = PixelSides::new();
         borders.start(&tile, &messages);
-        let listening = |borders: &PixelSides, point: [u16; 2]| {
+        let notified_pixels = |borders: &PixelSides, point: [u16; 2]| {
             let side = borders.side_of(point)?;
-            let pixels = side.listening.into_iter().flatten();
+            let pixels = side.notified_pixels.into_iter().flatten();
             Some(
                 pixels
                     .filter_map(|(place, side)| Some((borders.pixel(place)?, side)))
@@ -196,28 +196,34 @@ mod tests {
         };
         let between = [step, step + 5];
         let both: Vec<([usize; 2], u8)> = vec![([1, 4], RIGHT), ([1, 5], LEFT)];
-        assert_eq!(listening(&borders, between), Some(both));
+        assert_eq!(notified_pixels(&borders, between), Some(both));
         let side = borders.side_of(between).expect("a side");
         assert_eq!(side.ends, [[step, step], [step, 2 * step]]);
         borders.note(&borders.cell_of([1, 5]), LEFT | ABOVE);
-        assert_eq!(listening(&borders, between), Some(vec![([1, 4], RIGHT)]));
-        borders.note(&borders.cell_of([1, 4]), ALL);
-        assert_eq!(listening(&borders, between), None);
         assert_eq!(
-            listening(&borders, [2 * step + 1, step]),
+            notified_pixels(&borders, between),
+            Some(vec![([1, 4], RIGHT)])
+        );
+        borders.note(&borders.cell_of([1, 4]), ALL);
+        assert_eq!(notified_pixels(&borders, between), None);
+        assert_eq!(
+            notified_pixels(&borders, [2 * step + 1, step]),
             Some(vec![([1, 6], ABOVE)])
         );
         // Across the tile's edge are pixels of others; beyond the edge of the picture, there are none.
         let (left, _) = borders
             .side_of([0, 1])
-            .and_then(|side| side.listening[0])
+            .and_then(|side| side.notified_pixels[0])
             .expect("one");
         let left = borders.listener(left);
         assert!(matches!(left, Some(Listener::Elsewhere([0, 3]))));
-        assert_eq!(listening(&borders, [3 * step, 1]), None);
-        assert_eq!(listening(&borders, [1, 0]), Some(vec![([0, 4], ABOVE)]));
-        assert_eq!(listening(&borders, [step, step]), None, "a corner");
-        assert_eq!(listening(&borders, [1, 1]), None, "inside");
+        assert_eq!(notified_pixels(&borders, [3 * step, 1]), None);
+        assert_eq!(
+            notified_pixels(&borders, [1, 0]),
+            Some(vec![([0, 4], ABOVE)])
+        );
+        assert_eq!(notified_pixels(&borders, [step, step]), None, "a corner");
+        assert_eq!(notified_pixels(&borders, [1, 1]), None, "inside");
         borders.finish(&tile, &messages);
         let known = messages.row(1, &(3..6)).iter();
         let known: Vec<u8> = known.map(|sides| sides.load(Ordering::Relaxed)).collect();

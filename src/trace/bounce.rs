@@ -19,7 +19,7 @@ pub struct Bounce<L: SimdFloat> {
     /// Where each packet comes from, in bounces of mirrored rays.
     pub parents: Vec<ReflectionParent<L>>,
     /// What is to be found out about edges.
-    pub edges_are: EdgeDetail,
+    pub edge_detail: EdgeDetail,
     /// One entry per packet, if edges are noted.
     pub edges: Vec<EdgeInfo<L>>,
     /// One entry per packet, if doubtful hits are noted.
@@ -60,7 +60,7 @@ impl<L: SimdFloat> Bounce<L> {
         Self {
             packets: Vec::new(),
             parents: Vec::new(),
-            edges_are: EdgeDetail::Ignored,
+            edge_detail: EdgeDetail::Ignored,
             edges: Vec::new(),
             uncertainties: Vec::new(),
             seen: Candidates::default(),

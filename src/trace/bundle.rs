@@ -36,7 +36,7 @@ pub struct Shaft<R> {
 struct ShaftAxis<R> {
     /// 0 if all rays go upwards and meet the lower plane of a box first; 1 if all go downwards; `None` if they go
     /// both ways.
-    first: Option<usize>,
+    entry_plane: Option<usize>,
     /// Origins from which the planes met first and last are measured.
     origins: [R; 2],
     /// Least and greatest reciprocal of the directions.
@@ -50,8 +50,9 @@ impl<L: SimdFloat> Bundle<L> {
     pub fn new(rays: &Ray<L>, blur: &Blur<L>, active: L::Mask, reach: L::Real) -> Self {
         let like = rays.origin.x;
         let size = rays.origin.max_abs() + like.like(reach);
-        let slack = size * like.like(roundings()) + aside(blur, like.like(L::Real::ZERO), size);
-        Self::between(rays.origin, slack, rays.direction, active)
+        let slack =
+            size * like.like(roundings()) + blur_margin(blur, like.like(L::Real::ZERO), size);
+        Self::from_slack(rays.origin, slack, rays.direction, active)
     }
 
     /// The paths from a point to the starts of the rays, all parametrised to length 1; the rays must go to that
@@ -73,12 +74,12 @@ impl<L: SimdFloat> Bundle<L> {
         // A ray misses the point by the rounding errors of its start and its direction.
         let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
         let from = (ways.length() - deepest).max(far.like(L::Real::ZERO));
-        let slack = rounded + aside(blur, from, size);
-        Self::between(origin, slack, ways, active)
+        let slack = rounded + blur_margin(blur, from, size);
+        Self::from_slack(origin, slack, ways, active)
     }
 
     #[inline(always)]
-    fn between(origin: Vec3<L>, slack: L, direction: Vec3<L>, active: L::Mask) -> Self {
+    fn from_slack(origin: Vec3<L>, slack: L, direction: Vec3<L>, active: L::Mask) -> Self {
         let slack = Vec3::splat(slack);
         let inverse = inverse(direction);
         let origins = [origin - slack, origin + slack];
@@ -102,7 +103,7 @@ impl<L: SimdFloat> Bundle<L> {
     pub fn meet_all(&mut self) {
         self.is_boxed = false;
         for axis in &mut self.shaft.axes {
-            axis.first = None;
+            axis.entry_plane = None;
         }
     }
 
@@ -191,7 +192,7 @@ impl<L: SimdFloat> Bundle<L> {
         let [below, above] = &self.origins;
         let axis = |below: L, above: L, inverse: L| {
             let inverse = inverse.lane(lane);
-            ShaftAxis::between([below.lane(lane), above.lane(lane)], [inverse, inverse])
+            ShaftAxis::from_intervals([below.lane(lane), above.lane(lane)], [inverse, inverse])
         };
         Shaft {
             axes: [
@@ -318,7 +319,9 @@ impl<R: Real> Shaft<R> {
         let mut near = L::splat(token, R::ZERO);
         let mut far = reach;
         for (axis, common) in self.axes.iter().enumerate() {
-            let Some(first) = common.first else { continue };
+            let Some(first) = common.entry_plane else {
+                continue;
+            };
             let enter = L::load_singles(token, &node.planes[first][axis][from..]);
             let leave = L::load_singles(token, &node.planes[1 - first][axis][from..]);
             let mut enter = enter - L::splat(token, common.origins[0]);
@@ -342,7 +345,7 @@ impl<R: Real> ShaftAxis<R> {
     #[inline(always)]
     fn new<L: SimdFloat<Real = R>>(active: L::Mask, origins: [L; 2], inverse: L) -> Self {
         let inverse = [least(active, inverse), greatest(active, inverse)];
-        Self::between(
+        Self::from_intervals(
             [least(active, origins[0]), greatest(active, origins[1])],
             inverse,
         )
@@ -357,26 +360,26 @@ impl<R: Real> ShaftAxis<R> {
         } else {
             [-R::INFINITY, R::INFINITY]
         };
-        Self::between(origins, inverse)
+        Self::from_intervals(origins, inverse)
     }
 
     #[inline(always)]
-    fn between(origins: [R; 2], inverse: [R; 2]) -> Self {
+    fn from_intervals(origins: [R; 2], inverse: [R; 2]) -> Self {
         if inverse[0] > R::ZERO {
             Self {
-                first: Some(0),
+                entry_plane: Some(0),
                 origins: [origins[1], origins[0]],
                 inverse,
             }
         } else if inverse[1] < R::ZERO {
             Self {
-                first: Some(1),
+                entry_plane: Some(1),
                 origins,
                 inverse,
             }
         } else {
             Self {
-                first: None,
+                entry_plane: None,
                 origins,
                 inverse,
             }
@@ -387,7 +390,7 @@ impl<R: Real> ShaftAxis<R> {
 /// How far beside the rays a box still counts as met, if it is no nearer than `from` and no coordinate exceeds
 /// `size`.
 #[inline(always)]
-pub fn aside<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
+pub fn blur_margin<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
     if L::Real::IS_FILTERED {
         // As much as hits may be in doubt, along the longest path through the scene.
         let longest = from + size * size.like_f64(LONGEST);

@@ -15,7 +15,7 @@ pub struct Cell {
     /// Length of its side in steps of the finest grid.
     pub side: u16,
     /// What was looked for at its corners, or at those of the cell that it is a part of.
-    pub looked: EdgeDetail,
+    pub detail: EdgeDetail,
     /// Whether lights may swap in it or in a cell that it is a part of, see [`super::shadows`].
     pub swaps_lights: bool,
     /// Whether it may show a mesh face that no corner is on, or light between two such faces.
@@ -31,7 +31,7 @@ impl Cell {
             x: (column * FINEST) as u16,
             y: (row * FINEST) as u16,
             side: FINEST as u16,
-            looked: EdgeDetail::Near,
+            detail: EdgeDetail::Near,
             swaps_lights: false,
             may_hide_face,
             corners: [0; 4],
@@ -42,7 +42,7 @@ impl Cell {
     /// samples, nor the shadows and faces that end near them.
     pub fn unwatched(self) -> Self {
         Self {
-            looked: EdgeDetail::Signed,
+            detail: EdgeDetail::Signed,
             ..self
         }
     }

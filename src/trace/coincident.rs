@@ -8,7 +8,7 @@ use super::intersect::{Kernel, Nearest};
 use super::paths::{Paths, real};
 use super::scan::Test;
 use super::walk::Stack;
-use crate::plan::Others;
+use crate::plan::RankedObjects;
 use crate::primitive::{Blur, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
@@ -75,7 +75,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
     /// Tests those of the objects that are in no tree.
     #[inline(always)]
-    fn meet_all(self, over: &Others, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
+    fn meet_all(self, over: &RankedObjects, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
         for number in over.listed() {
             let meet = TestListed {
                 paths,
@@ -90,7 +90,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 /// Looks for the first of some objects that is hit where another one was.
 struct CoincidentTest<'a, L: SimdFloat> {
     methods: &'a Methods,
-    over: &'a Others,
+    over: &'a RankedObjects,
     met: Nearest<L>,
     /// Greatest distance between the two hits across the surface.
     apart: L,

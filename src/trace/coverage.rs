@@ -26,7 +26,7 @@ pub struct CrossedCell<R> {
     /// The corners on the first side of the edge, as bits.
     first: u8,
     /// What is seen on both sides.
-    things: [EdgeSide<R>; 2],
+    sides_seen: [EdgeSide<R>; 2],
     crossings: [Crossing; 2],
     /// Whether `checks` is set: the points whose samples show if the edge is straight.
     is_checked: bool,
@@ -40,7 +40,7 @@ pub enum CellFinding {
     /// Not enough yet.
     Nothing,
     /// It is not crossed by one straight edge.
-    Disorder(Cell),
+    NotOneEdge(Cell),
     /// Its colour, which was added to its pixel.
     Color,
 }
@@ -84,24 +84,24 @@ impl<R: Real> CrossedCell<R> {
             if (one.signature ^ other.signature) & THING != 0 || cell.swaps_lights {
                 apart = apart.max(R::from_f64(GAP_CONTRAST));
             }
-            Crossing::new(cell, (corner, axis), enough(cell, apart, limits))
+            Crossing::new(cell, (corner, axis), tolerance(cell, apart, limits))
         };
         let [(corner, axis), other] = sides;
         let thing = |corner: usize| EdgeSide {
             seen: *corners[corner],
             limit,
         };
-        let things = [thing(corner), thing(corner ^ (1 << axis))];
+        let sides_seen = [thing(corner), thing(corner ^ (1 << axis))];
         for (corner, sample) in corners.iter().enumerate() {
             let is_first = first >> corner & 1 == 1;
-            if !things[usize::from(!is_first)].is_in(sample) {
+            if !sides_seen[usize::from(!is_first)].is_in(sample) {
                 return None;
             }
         }
         Some(Self {
             cell: *cell,
             first,
-            things,
+            sides_seen,
             crossings: [crossing(sides[0]), crossing(other)],
             is_checked: false,
             checks: [None; 2],
@@ -133,15 +133,15 @@ impl<R: Real> CrossedCell<R> {
 
     /// Evaluates the requested samples. If the colour is found, adds it to `colors`.
     pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> CellFinding {
-        let disorder = CellFinding::Disorder(self.cell.unwatched());
+        let disorder = CellFinding::NotOneEdge(self.cell.unwatched());
         for crossing in &mut self.crossings {
-            if !crossing.narrow(lattice, &self.things) {
+            if !crossing.narrow(lattice, &self.sides_seen) {
                 return disorder;
             }
         }
         for (side, check) in self.checks.iter().enumerate() {
             let seen = lattice.sample(self.checked[side]);
-            if check.is_some() && !self.things[side].is_in(seen) {
+            if check.is_some() && !self.sides_seen[side].is_in(seen) {
                 return disorder;
             }
         }
@@ -253,14 +253,14 @@ fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
 }
 
 /// Number of steps within which the crossing of an edge of this contrast must be located.
-fn enough<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
+fn tolerance<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
     let least = limits.least_side() / 2;
-    let mut enough = cell.side / 4;
+    let mut tolerance = cell.side / 4;
     let error = |steps: u16| contrast * R::from_f64(f64::from(steps) / FINEST as f64);
-    while enough > least && R::from_f64(EDGE_ERROR / 2.0) < error(enough) {
-        enough /= 2;
+    while tolerance > least && R::from_f64(EDGE_ERROR / 2.0) < error(tolerance) {
+        tolerance /= 2;
     }
-    enough.max(1)
+    tolerance.max(1)
 }
 
 #[cfg(test)]
@@ -318,7 +318,7 @@ mod tests {
             lattice.take_results(&see(&samples, &is_white));
             match crossed.take(&lattice, &mut colors) {
                 CellFinding::Nothing => {}
-                CellFinding::Disorder(_) => return None,
+                CellFinding::NotOneEdge(_) => return None,
                 CellFinding::Color => return Some((colors.channels[0][0], taken)),
             }
         }

@@ -49,7 +49,7 @@ pub struct Crossing {
     /// Steps from the corner to the first sample beyond the edge.
     pub high: u16,
     /// The search ends once `high - low` is no more than this.
-    enough: u16,
+    tolerance: u16,
     /// Indices of the samples at `low` and `high`.
     pub seen: [u32; 2],
     /// Indices of the samples requested between them.
@@ -58,7 +58,7 @@ pub struct Crossing {
 
 impl Crossing {
     /// Creates a search over the whole side of the cell that runs from `corner` along `axis`.
-    pub fn new(cell: &Cell, (corner, axis): (usize, usize), enough: u16) -> Self {
+    pub fn new(cell: &Cell, (corner, axis): (usize, usize), tolerance: u16) -> Self {
         let place = |from: u16, axis: usize| from + (corner >> axis & 1) as u16 * cell.side;
         Self {
             corner: [place(cell.x, 0), place(cell.y, 1)],
@@ -66,7 +66,7 @@ impl Crossing {
             is_back: corner >> axis & 1 == 1,
             low: 0,
             high: cell.side,
-            enough,
+            tolerance,
             seen: [cell.corners[corner], cell.corners[corner ^ (1 << axis)]],
             inside: [0; 3],
         }
@@ -97,13 +97,13 @@ impl Crossing {
 
     /// Returns whether the edge is located closely enough.
     pub fn is_found(&self) -> bool {
-        self.high - self.low <= self.enough
+        self.high - self.low <= self.tolerance
     }
 
     /// Steps from `low` to the first point that is sampled next, and from each of these points to the next.
     fn step(&self) -> u16 {
         let quarter = (self.high - self.low) / 4;
-        if quarter < self.enough {
+        if quarter < self.tolerance {
             (self.high - self.low) / 2
         } else {
             quarter

@@ -122,7 +122,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             thin,
             is_umbra,
         } = between;
-        entry_points.forget();
+        entry_points.reset();
         let from = light.position.to_dvec3();
         let beside = footprint.unwrap_or(L::Real::ZERO);
         let beam = Beam::to_ball(from, ball);

@@ -9,7 +9,7 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// Two hits may swap places if they are no farther apart along a ray than this many times its lateral error: this
 /// covers surfaces that the ray meets at up to 89 degrees from their normals.
-const SLANT: f64 = 64.0;
+const GRAZING_FACTOR: f64 = 64.0;
 
 /// Whether kernels detect doubtful hits. Those without `TREE` do not, and lose no time by it: scenes of few things
 /// have few edges. If such a scene is filtered nevertheless, kernels with `TREE` trace it.
@@ -39,7 +39,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         Self {
             is_asked,
             blur,
-            along: blur.times(if tells_nearer { SLANT } else { 0.0 }),
+            along: blur.times(if tells_nearer { GRAZING_FACTOR } else { 0.0 }),
             from: blur.start.like(L::Real::INFINITY),
             second: blur.start.like(L::Real::INFINITY),
         }
@@ -199,7 +199,7 @@ pub fn widest_blur<L: SimdFloat>(
 
 /// Error of the hits of rays along a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Slant<L: SimdFloat> {
+pub struct HitError<L: SimdFloat> {
     off: L,
     /// Where the error is so large that nothing can be said about rays that go on from there: it exceeds even the
     /// distance that is searched around them.
@@ -212,7 +212,7 @@ pub struct Slant<L: SimdFloat> {
     own: Blur<L>,
 }
 
-impl<L: SimdFloat> Slant<L> {
+impl<L: SimdFloat> HitError<L> {
     /// For rays that hit the surface at distance `t`, with this cosine between them and its normal.
     #[inline(always)]
     pub fn new(rays: &Uncertainty<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {

@@ -182,7 +182,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             let (bounces, deeper) = self.work.bounces.split_at_mut(depth + 1);
             let (bounce, next) = (&mut bounces[depth], &mut deeper[0]);
             next.clear();
-            next.edges_are = bounce.edges_are;
+            next.edge_detail = bounce.edge_detail;
             let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
             if bounce.find(kernel, &mut self.work.scratch) {
                 if depth == 0 {

@@ -18,7 +18,7 @@ pub struct EntryPoints {
 
 impl EntryPoints {
     /// Resets the entry points to the roots of the trees.
-    pub fn forget(&mut self) {
+    pub fn reset(&mut self) {
         self.objects = None;
         self.meshes.clear();
     }

@@ -41,8 +41,8 @@ pub fn note_faces<L: SimdFloat>(
                 last = number;
                 let face = (number != NOTHING).then(|| face_of(plan, number as usize));
                 mark = face.flatten().map_or(0, |face| {
-                    let dark = dark_sides(plan, face, packet.rays.direction.lane(lane));
-                    u64::from(dark) << (u64::BITS - u32::BITS) | mark_of(face.0.corners)
+                    let unlit_lights = lights_behind(plan, face, packet.rays.direction.lane(lane));
+                    u64::from(unlit_lights) << (u64::BITS - u32::BITS) | mark_of(face.0.corners)
                 });
             }
             let place = index * L::WIDTH + lane;
@@ -81,16 +81,16 @@ fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
 /// Returns which of the first [`LIGHTS`] lights are behind a face that is seen in this direction, or so low above
 /// it that their light is not visible. The result is the same in any precision, even if a light is in the plane of
 /// the face.
-fn dark_sides<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
+fn lights_behind<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
     let place = face.corners[0] + origin;
     let is_front = direction.dot(face.normal) < R::ZERO;
     let lights = plan.lights.iter().take(LIGHTS).enumerate();
-    lights.fold(0, |dark, (number, light)| {
+    lights.fold(0, |unlit_lights, (number, light)| {
         let way = light.position - place;
         let height = way.dot(face.normal);
         let height = if is_front { height } else { -height };
         let is_lit = way.length() * R::from_f64(GRAZING) < height;
-        dark | u32::from(!is_lit) << number
+        unlit_lights | u32::from(!is_lit) << number
     })
 }
 
@@ -124,7 +124,7 @@ pub fn may_hide_face(corners: [u64; 4]) -> bool {
 /// from it.
 pub fn may_hide_light(corners: [u64; 4]) -> bool {
     any_beside(corners, |one, other| {
-        one != 0 && other != 0 && dark(one) != dark(other)
+        one != 0 && other != 0 && unlit_lights(one) != unlit_lights(other)
     })
 }
 
@@ -139,11 +139,11 @@ fn are_neighbours(a: u64, b: u64) -> bool {
     let corners = |mark: u64| [mark, mark >> BITS, mark >> (2 * BITS)].map(|bits| bits & CORNER);
     let others = corners(b);
     let shared = corners(a).into_iter().filter(|own| others.contains(own));
-    a == 0 || b == 0 || (shared.count() >= 2 && dark(a) == dark(b))
+    a == 0 || b == 0 || (shared.count() >= 2 && unlit_lights(a) == unlit_lights(b))
 }
 
 /// The lights behind the face, as bits.
-fn dark(mark: u64) -> u64 {
+fn unlit_lights(mark: u64) -> u64 {
     mark >> (u64::BITS - u32::BITS)
 }
 
@@ -179,11 +179,11 @@ mod tests {
             }
         }
         // A light behind only one of two neighbours.
-        let dark = fan(1) | 1 << u32::BITS;
-        assert!(may_hide_face([fan(0), dark, fan(0), dark]));
-        assert!(may_hide_light([fan(0), dark, fan(0), dark]));
+        let unlit_lights = fan(1) | 1 << u32::BITS;
+        assert!(may_hide_face([fan(0), unlit_lights, fan(0), unlit_lights]));
+        assert!(may_hide_light([fan(0), unlit_lights, fan(0), unlit_lights]));
         for alike in [
-            [fan(0) | 1 << u32::BITS, dark, 0, dark],
+            [fan(0) | 1 << u32::BITS, unlit_lights, 0, unlit_lights],
             [fan(0), fan(1), 0, fan(1)],
         ] {
             assert!(!may_hide_face(alike) && !may_hide_light(alike));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::beam::{Bounds, beam_around};
 use super::bounce::Bounce;
-use super::bundle::{Shaft, aside};
+use super::bundle::{Shaft, blur_margin};
 use super::candidates::{Candidates, Targets};
 use super::cull::Scratch;
 use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};
@@ -62,7 +62,7 @@ impl<L: SimdFloat> Bounce<L> {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }
-        self.edges_are = edges;
+        self.edge_detail = edges;
         if edges != EdgeDetail::Ignored {
             let (width, spread) = view.footprint();
             let cone = RayCone {
@@ -75,7 +75,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Returns whether things that may slip between samples are looked for.
     fn looks_for_thin(&self) -> bool {
-        self.edges_are == EdgeDetail::Near
+        self.edge_detail == EdgeDetail::Near
     }
 
     /// Returns the primitives on which the rays of a packet start.
@@ -197,7 +197,7 @@ impl<L: SimdFloat> Bounce<L> {
     /// Finds where the packets enter the trees, and whether something thin may slip between their rays there.
     #[inline(always)]
     fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
-        self.entry_points.forget();
+        self.entry_points.reset();
         let Some((geometry, _)) = kernel.geometry() else {
             return;
         };
@@ -213,7 +213,7 @@ impl<L: SimdFloat> Bounce<L> {
         let (origins, directions) = (origins.around(), directions.around());
         let size = origins.max_abs() + geometry.bvh.bounds.max_abs();
         let blur = widest_blur(kernel.token, &self.uncertainties);
-        let slack = size * roundings() + aside(&blur, L::Real::ZERO, size);
+        let slack = size * roundings() + blur_margin(&blur, L::Real::ZERO, size);
         let shaft = Shaft::of(&origins.widened(slack), &directions);
         let infinity = L::Real::INFINITY;
         self.seen.has_geometry =
@@ -275,7 +275,7 @@ impl<L: SimdFloat> Bounce<L> {
     ) {
         let looks_for_thin = self.looks_for_thin();
         let has_gaps =
-            self.edges_are >= EdgeDetail::Bordered && kernel.may_leave_gaps(&self.lights);
+            self.edge_detail >= EdgeDetail::Bordered && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {

@@ -153,7 +153,11 @@ impl<R: Real> Gathered<R> {
 
     /// Sets `mixed` to the materials in all lanes.
     #[inline(always)]
-    pub fn part<L: SimdFloat<Real = R>>(&self, token: L::Token, mixed: &mut MixedMaterials<L>) {
+    pub fn group_by_material<L: SimdFloat<Real = R>>(
+        &self,
+        token: L::Token,
+        mixed: &mut MixedMaterials<L>,
+    ) {
         mixed.clear();
         let materials = L::load(token, &self.materials);
         let mut left = self.mask::<L>(token).bits();

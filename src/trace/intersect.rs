@@ -172,7 +172,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         stack: &mut Stack<L::Real>,
     ) -> Blocked<L> {
         let none = !wanted & wanted;
-        let mut way = Way {
+        let mut state = OcclusionState {
             free: wanted,
             met: none,
             passed: none,
@@ -184,32 +184,32 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             sure: doubt.ahead_of(distance),
             reach: distance,
             thick,
-            way: &mut way,
+            state: &mut state,
         };
         scan_lists(self.plan, targets.candidates, paths, &mut test);
-        if way.free.any()
-            && let Some(tree_scan) = self.tree_scan(targets, (way.free, way.doubt.blur))
+        if state.free.any()
+            && let Some(tree_scan) = self.tree_scan(targets, (state.free, state.doubt.blur))
         {
-            let mut known = way;
-            self.way_in(&tree_scan, paths, (distance, thick, &mut known), stack);
-            way = known;
+            let mut known = state;
+            self.blocked_in_tree(&tree_scan, paths, (distance, thick, &mut known), stack);
+            state = known;
         }
         Blocked {
-            anywhere: wanted & (!way.free | way.passed | way.met),
-            wide: wanted & !way.free,
+            anywhere: wanted & (!state.free | state.passed | state.met),
+            by_thick: wanted & !state.free,
             // Possible hits behind the light do not count. A thin occluder does not settle whether there is a wide
             // one.
-            doubt: way.free & way.doubt.from.at_most(distance),
+            doubt: state.free & state.doubt.from.at_most(distance),
         }
     }
 
     /// Continues [`Self::blocked`] in the tree.
     #[inline(never)]
-    fn way_in(
+    fn blocked_in_tree(
         self,
         tree_scan: &TreeScan<L>,
         paths: &Paths<L>,
-        (distance, thick, way): (L, Option<L>, &mut Way<L, TREE>),
+        (distance, thick, state): (L, Option<L>, &mut OcclusionState<L, TREE>),
         stack: &mut Stack<L::Real>,
     ) {
         L::vectorize(
@@ -220,13 +220,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 let mut test = BlockedTest::<L, TREE, false> {
                     methods: &self.plan.methods,
                     distance,
-                    sure: way.doubt.ahead_of(distance),
+                    sure: state.doubt.ahead_of(distance),
                     reach: match tree_scan.back_from {
                         None => distance,
-                        Some(_) => all * way.doubt.stretch(distance),
+                        Some(_) => all * state.doubt.stretch(distance),
                     },
                     thick,
-                    way,
+                    state,
                 };
                 tree_scan.scan(paths, stack, &mut test);
             },
@@ -240,7 +240,7 @@ pub struct Blocked<L: SimdFloat> {
     /// Where there is any occluder.
     pub anywhere: L::Mask,
     /// Where there is an occluder that is thicker than the given limit, or any if there is no limit.
-    pub wide: L::Mask,
+    pub by_thick: L::Mask,
     /// Where rounding may decide one of the two.
     pub doubt: L::Mask,
 }
@@ -303,12 +303,12 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     reach: L,
     /// If given, primitives that are no thicker do not end the search.
     thick: Option<L>,
-    way: &'a mut Way<L, TREE>,
+    state: &'a mut OcclusionState<L, TREE>,
 }
 
 /// What is known so far about the paths up to the distance.
 #[derive(Clone, Copy)]
-struct Way<L: SimdFloat, const TREE: bool> {
+struct OcclusionState<L: SimdFloat, const TREE: bool> {
     /// Where no certain hit was found yet, except on primitives that are too thin to end the search.
     free: L::Mask,
     /// Where a hit was found, certain or not; only noted if doubt is tracked.
@@ -324,12 +324,12 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
 {
     #[inline(always)]
     fn reach(&self) -> L {
-        L::select(self.way.free, self.reach, self.reach.like_f64(-1.0))
+        L::select(self.state.free, self.reach, self.reach.like_f64(-1.0))
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        !self.way.free.any()
+        !self.state.free.any()
     }
 
     #[inline(always)]
@@ -340,19 +340,19 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         paths: &Paths<L>,
         number: usize,
     ) {
-        let way = &mut *self.way;
-        let is_met = if way.doubt.is_asked() {
-            let (primitive, asked) = ((primitive, number), (self.methods, way.free));
-            let distance = way
+        let state = &mut *self.state;
+        let is_met = if state.doubt.is_asked() {
+            let (primitive, asked) = ((primitive, number), (self.methods, state.free));
+            let distance = state
                 .doubt
                 .distance::<LISTED, P>(primitive, prepared, paths, asked);
             let Some((t, from)) = distance else { return };
             // A certain hit leaves no doubt about itself; if it does not end the search, doubt about what is behind
             // it may remain.
             let is_met = t.less(self.sure) & self.distance.less(from);
-            let open = L::select(is_met, way.doubt.from, from.min(t));
-            way.doubt.from = way.doubt.from.min(open);
-            way.met = way.met | t.less(self.distance);
+            let open = L::select(is_met, state.doubt.from, from.min(t));
+            state.doubt.from = state.doubt.from.min(open);
+            state.met = state.met | t.less(self.distance);
             is_met
         } else {
             let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
@@ -361,10 +361,10 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         let is_end = match self.thick {
             None => is_met,
             Some(thick) => {
-                way.passed = way.passed | way.free & is_met;
-                is_met & thick.less(primitive.breadth(paths.rays.direction))
+                state.passed = state.passed | state.free & is_met;
+                is_met & thick.less(primitive.blocking_width(paths.rays.direction))
             }
         };
-        way.free = way.free & !is_end;
+        state.free = state.free & !is_end;
     }
 }

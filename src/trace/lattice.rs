@@ -5,7 +5,7 @@ use super::faces::may_hide_light;
 use super::points::PointTable;
 use super::samples::{EdgeDetail, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::{EDGE_ERROR, FINEST, NEAR, SPREAD_OUT, TWISTED, UNEVEN};
+use super::thresholds::{EDGE_ERROR, FARTHEST_CORNER, FINEST, SPREAD_OUT, TWISTED, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
@@ -254,7 +254,7 @@ impl<R: Real> Lattice<R> {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
-        cell.looked == EdgeDetail::Near && least < R::from_f64(NEAR * cell.width())
+        cell.detail == EdgeDetail::Near && least < R::from_f64(FARTHEST_CORNER * cell.width())
     }
 
     /// Returns what the corners of a cell tell about its inside.
@@ -272,7 +272,7 @@ impl<R: Real> Lattice<R> {
         }
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
         if cell.may_hide_face
-            || (is_one && EdgeDetail::Bordered <= cell.looked && may_leave_gap(shadows))
+            || (is_one && EdgeDetail::Bordered <= cell.detail && may_leave_gap(shadows))
         {
             return Inside::Anything;
         }
@@ -316,7 +316,7 @@ impl<R: Real> Lattice<R> {
     pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
         let [a, b, c, d] = self.corners(pixel);
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        EdgeDetail::Bordered <= pixel.looked && shadows != [0; 4] && may_swap_lights(shadows)
+        EdgeDetail::Bordered <= pixel.detail && shadows != [0; 4] && may_swap_lights(shadows)
     }
 
     /// Requests a sample in the middle of a cell and returns its index.
@@ -390,7 +390,7 @@ impl<R: Real> Lattice<R> {
             x,
             y,
             side: half,
-            looked: cell.looked,
+            detail: cell.detail,
             swaps_lights: cell.swaps_lights,
             may_hide_face: false,
             corners,

@@ -41,7 +41,7 @@ pub struct BandMessages<'a> {
     /// All messages of the picture.
     pub messages: &'a EdgeMessages,
     /// The pixels that have received messages, by row and column, if only these are traced.
-    pub those: Option<&'a [[usize; 2]]>,
+    pub only_pixels: Option<&'a [[usize; 2]]>,
 }
 
 impl<'a> BandMessages<'a> {
@@ -49,7 +49,7 @@ impl<'a> BandMessages<'a> {
     pub fn all(messages: &'a EdgeMessages) -> Self {
         Self {
             messages,
-            those: None,
+            only_pixels: None,
         }
     }
 }

@@ -24,7 +24,7 @@ const ALIKE: u8 = 4;
 pub struct Refinement<R> {
     lattice: Lattice<R>,
     cells: Vec<Cell>,
-    split: Vec<Cell>,
+    to_divide: Vec<Cell>,
     crossed: Vec<CrossedCell<R>>,
     /// Cells whose colour may change evenly, and the samples in their middles.
     even: Vec<(Cell, u32)>,
@@ -33,7 +33,7 @@ pub struct Refinement<R> {
     /// Number of samples that have been checked for what they tell the pixels beside them.
     received: usize,
     /// Pixels that have received a message and are not divided yet.
-    to_divide: Vec<Cell>,
+    notified_pixels: Vec<Cell>,
     /// Row and column in the tile of all pixels that have received one.
     notified: Vec<[usize; 2]>,
     /// For each pixel of the tile, row by row: how many of its sixteen parts are to be divided, and how many of
@@ -49,12 +49,12 @@ impl<R: Real> Refinement<R> {
         Self {
             lattice: Lattice::new(),
             cells: Vec::new(),
-            split: Vec::new(),
+            to_divide: Vec::new(),
             crossed: Vec::new(),
             even: Vec::new(),
             borders: PixelSides::new(),
             received: 0,
-            to_divide: Vec::new(),
+            notified_pixels: Vec::new(),
             notified: Vec::new(),
             busy: Vec::new(),
             crowded: Vec::new(),
@@ -63,7 +63,7 @@ impl<R: Real> Refinement<R> {
 
     /// Removes the cells of the previous tile.
     pub fn clear(&mut self) {
-        self.split.clear();
+        self.to_divide.clear();
         self.cells.clear();
         self.crossed.clear();
         self.even.clear();
@@ -85,7 +85,7 @@ impl<R: Real> Refinement<R> {
     /// Adds a pixel of a tile, given whether it may show a face of a mesh that no corner is on.
     #[inline(always)]
     pub fn add(&mut self, column: usize, row: usize, may_hide_face: bool) {
-        self.split.push(Cell::pixel(column, row, may_hide_face));
+        self.to_divide.push(Cell::pixel(column, row, may_hide_face));
     }
 
     /// Starts with the pixels that were added, which become black, and with the results at the corners of all
@@ -98,14 +98,14 @@ impl<R: Real> Refinement<R> {
         limits: Limits<R>,
         colors: &mut TileColors<R>,
     ) -> bool {
-        if self.split.is_empty() {
+        if self.to_divide.is_empty() {
             return false;
         }
         self.lattice.clear();
-        self.lattice.add(tile, corners, &mut self.split);
+        self.lattice.add(tile, corners, &mut self.to_divide);
         self.borders.start(tile, messages);
         self.received = 0;
-        self.cells.append(&mut self.split);
+        self.cells.append(&mut self.to_divide);
         for pixel in &self.cells {
             colors.blacken(pixel.pixel_in(colors.stride));
         }
@@ -128,7 +128,7 @@ impl<R: Real> Refinement<R> {
         for pixel in pixels {
             let pixel = self.borders.cell_of(*pixel);
             self.borders.note(&pixel, ALL);
-            self.to_divide.push(pixel);
+            self.notified_pixels.push(pixel);
         }
         self.divide_notified(tile, corners, colors);
     }
@@ -137,7 +137,7 @@ impl<R: Real> Refinement<R> {
     #[inline(never)]
     pub fn divide_near(&mut self) {
         let (lattice, cells) = (&mut self.lattice, &mut self.cells);
-        self.split.retain(|pixel| {
+        self.to_divide.retain(|pixel| {
             let is_near = lattice.is_near(pixel);
             if is_near {
                 self.borders.note(pixel, ALL);
@@ -145,15 +145,15 @@ impl<R: Real> Refinement<R> {
             }
             !is_near
         });
-        for pixel in &mut self.split {
-            pixel.looked = EdgeDetail::Bordered;
+        for pixel in &mut self.to_divide {
+            pixel.detail = EdgeDetail::Bordered;
         }
     }
 
     /// Divides the cells that are put aside for it.
     #[inline(never)]
     pub fn divide(&mut self) {
-        for cell in self.split.drain(..) {
+        for cell in self.to_divide.drain(..) {
             self.borders.note(&cell, ALL);
             self.lattice.subdivide(&cell, &mut self.cells);
         }
@@ -190,13 +190,13 @@ impl<R: Real> Refinement<R> {
     /// Adds the colours of the cells that are known well enough, and decides what to do with the others.
     #[inline(never)]
     pub fn settle(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
-        let (lattice, split) = (&self.lattice, &mut self.split);
+        let (lattice, to_divide) = (&self.lattice, &mut self.to_divide);
         self.crossed
             .retain_mut(|cell| match cell.take(lattice, colors) {
                 CellFinding::Nothing => true,
                 CellFinding::Color => false,
-                CellFinding::Disorder(cell) => {
-                    split.push(cell);
+                CellFinding::NotOneEdge(cell) => {
+                    to_divide.push(cell);
                     false
                 }
             });
@@ -209,7 +209,7 @@ impl<R: Real> Refinement<R> {
                     self.borders.note(&cell, crossed.sides());
                     self.crossed.push(crossed);
                 }
-                None => split.push(cell.unwatched()),
+                None => to_divide.push(cell.unwatched()),
             }
         }
         self.sort(limits, colors);
@@ -222,7 +222,7 @@ impl<R: Real> Refinement<R> {
     /// them.
     fn leave_crowded(&mut self, limits: Limits<R>, stride: usize) {
         let before = self.crowded.len();
-        for cell in &self.split {
+        for cell in &self.to_divide {
             if usize::from(cell.side) != FINEST / 4 {
                 continue;
             }
@@ -245,7 +245,7 @@ impl<R: Real> Refinement<R> {
             let busy = busy.get(cell.pixel_in(stride));
             busy.is_none_or(|&[parts, alike]| parts < PARTS || alike < ALIKE)
         };
-        self.split.retain(is_left);
+        self.to_divide.retain(is_left);
         self.crossed.retain(|crossed| is_left(crossed.cell()));
         self.even.retain(|(cell, _)| is_left(cell));
     }
@@ -265,11 +265,11 @@ impl<R: Real> Refinement<R> {
                 continue;
             };
             if R::from_f64(TELLING) < self.lattice.excess(received, side.ends) {
-                for (place, side) in side.listening.into_iter().flatten() {
+                for (place, side) in side.notified_pixels.into_iter().flatten() {
                     match self.borders.listener(place) {
                         Some(Listener::Here(pixel)) => {
                             self.borders.note(&pixel, ALL);
-                            self.to_divide.push(pixel);
+                            self.notified_pixels.push(pixel);
                         }
                         Some(Listener::Elsewhere(pixel)) => messages.send(pixel, side),
                         None => {}
@@ -288,16 +288,16 @@ impl<R: Real> Refinement<R> {
 
     /// Divides the pixels that have received a message, twice: the end of something may be in a single quarter.
     fn divide_notified(&mut self, tile: &Tile, corners: &Traced<R>, colors: &mut TileColors<R>) {
-        self.lattice.add(tile, corners, &mut self.to_divide);
-        for pixel in self.to_divide.drain(..) {
+        self.lattice.add(tile, corners, &mut self.notified_pixels);
+        for pixel in self.notified_pixels.drain(..) {
             colors.blacken(pixel.pixel_in(colors.stride));
             if let Some(busy) = self.busy.get_mut(pixel.pixel_in(colors.stride)) {
                 *busy = [0; 2];
             }
             self.notified.push(pixel.row_and_column());
-            let first = self.split.len();
-            self.lattice.subdivide(&pixel, &mut self.split);
-            for quarter in self.split.drain(first..) {
+            let first = self.to_divide.len();
+            self.lattice.subdivide(&pixel, &mut self.to_divide);
+            for quarter in self.to_divide.drain(first..) {
                 self.lattice.subdivide(&quarter, &mut self.cells);
             }
         }
@@ -319,9 +319,9 @@ impl<R: Real> Refinement<R> {
                         self.borders.note(&cell, crossed.sides());
                         self.crossed.push(crossed);
                     }
-                    None => self.split.push(cell),
+                    None => self.to_divide.push(cell),
                 },
-                Inside::Anything => self.split.push(cell),
+                Inside::Anything => self.to_divide.push(cell),
             }
         }
     }

@@ -10,7 +10,7 @@ use super::messages::EdgeMessages;
 use super::refinement::Refinement;
 use super::samples::{EdgeDetail, Samples, THING, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::NEAR;
+use super::thresholds::FARTHEST_CORNER;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
@@ -162,7 +162,7 @@ impl<L: SimdFloat> Sampler<L> {
         colors: &mut TileColors<L::Real>,
     ) {
         self.trace_corners(engine, seen, tile);
-        self.judge(engine.token(), tile, limits, colors);
+        self.average_and_select(engine.token(), tile, limits, colors);
         let corners = (&self.corners, messages);
         if !self.refinement.start(tile, corners, limits, colors) {
             return;
@@ -171,9 +171,9 @@ impl<L: SimdFloat> Sampler<L> {
         // the quarters of pixels is hit by some sample nearby, or shows too little. If nothing thin is near the
         // corners of a pixel, there is none in it either.
         self.refinement.divide_near();
-        self.look(engine, seen, tile, EdgeDetail::Near);
+        self.trace_wanted(engine, seen, tile, EdgeDetail::Near);
         self.refinement.divide();
-        self.look(engine, seen, tile, EdgeDetail::Bordered);
+        self.trace_wanted(engine, seen, tile, EdgeDetail::Bordered);
         self.refine(engine, seen, tile, (limits, messages), colors);
     }
 
@@ -232,7 +232,7 @@ impl<L: SimdFloat> Sampler<L> {
     ) {
         loop {
             while self.refinement.want() {
-                self.look(engine, seen, tile, EdgeDetail::Signed);
+                self.trace_wanted(engine, seen, tile, EdgeDetail::Signed);
                 self.refinement.settle(limits, colors);
             }
             let corners = (&self.corners, messages);
@@ -290,7 +290,7 @@ impl<L: SimdFloat> Sampler<L> {
 
     /// Traces the samples that were requested and have no result yet.
     #[inline(always)]
-    fn look<const TREE: bool>(
+    fn trace_wanted<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
         seen: &Candidates,
@@ -309,7 +309,7 @@ impl<L: SimdFloat> Sampler<L> {
     /// nearly everywhere, so this is most of the cost of smoothing: one loop over the whole tile, with one entry at
     /// the end of each row that is not a pixel.
     #[inline(always)]
-    fn judge(
+    fn average_and_select(
         &mut self,
         token: L::Token,
         tile: &Tile,
@@ -322,7 +322,7 @@ impl<L: SimdFloat> Sampler<L> {
         self.corners.lengthen(L::WIDTH);
         self.refinement.clear();
         let quarter = L::splat(token, L::Real::from_f64(0.25));
-        let reach = quarter.like_f64(NEAR);
+        let reach = quarter.like_f64(FARTHEST_CORNER);
         let has_faces = !self.corners.faces.is_empty();
         let has_shadows = self.corners.shadows.iter().any(|&shadows| shadows != 0);
         for first in (0..length).step_by(L::WIDTH) {

@@ -202,8 +202,8 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, settled: u64) {
-        self.test.leave_out(settled);
+    fn leave_out(&mut self, merged_lanes: u64) {
+        self.test.leave_out(merged_lanes);
     }
 }
 
@@ -244,9 +244,9 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
             test: self.test,
         };
         if T::FINDS_THIN {
-            let settled = faces.test.leave_out(0);
-            walk_thin(bvh, &bundle, margin, (stack, settled), &mut faces);
-            faces.test.leave_out(settled);
+            let merged_lanes = faces.test.leave_out(0);
+            walk_thin(bvh, &bundle, margin, (stack, merged_lanes), &mut faces);
+            faces.test.leave_out(merged_lanes);
         } else if let Some(start) = entry_points.of_mesh(geometry, mesh) {
             walk((bvh, start), &bundle, stack, &mut faces);
         }
@@ -293,8 +293,8 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, settled: u64) {
-        self.test.leave_out(settled);
+    fn leave_out(&mut self, merged_lanes: u64) {
+        self.test.leave_out(merged_lanes);
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::candidates::{Candidates, Targets};
 use super::cull::LightCandidates;
-use super::doubt::{Doubt, Slant, Uncertainty, is_filtered};
+use super::doubt::{Doubt, HitError, Uncertainty, is_filtered};
 use super::footprint::Footprint;
 use super::hit_material::HitMaterial;
 use super::intersect::{Blocked, Kernel};
@@ -53,7 +53,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
     /// How large a pixel is at the hits, if edges are noted.
     footprint: Option<Footprint<L>>,
     /// How far the hits may be off, if doubts are noted.
-    slant: Option<Slant<L>>,
+    slant: Option<HitError<L>>,
 }
 
 /// One of the plan's lights.
@@ -213,7 +213,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
         let slant = match uncertainty {
-            Some(own) => Some(Slant::new(own, (packet.near.t, along), &hit.surface)),
+            Some(own) => Some(HitError::new(own, (packet.near.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
@@ -364,7 +364,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let blocked = self.shadow(point, source, ways, (arriving, stack));
             if let Some((edge, footprint)) = beside {
                 // Within the shadow of something wide, that of something thin is not visible.
-                let open = facing & !blocked.wide;
+                let open = facing & !blocked.by_thick;
                 // If the light itself is not visible there, its shadow is not either.
                 let brightness = point.material.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);

@@ -6,16 +6,16 @@
 //! the cell, so is its inside: casters with outlines of their own are convex.
 
 /// Number of lights whose shadows are told apart: the first ones of the scene.
-const LIGHTS: usize = 3;
+const MARKED_LIGHTS: usize = 3;
 /// Number of lights that have a bit of their own in the sums of edges: sums of so many powers of two are exact in
 /// any real type.
 const LIGHT_BITS: usize = 20;
 /// Number of bits that further lights share: few, so that the sum of three thousand lights is exact as well.
-const SHARED: usize = 13;
+const SHARED_LIGHT_BITS: usize = 13;
 /// Bits of the mark of a caster. Those of all lights together are exact in any real type.
-const BITS: u32 = 5;
+const MARK_BITS: u32 = 5;
 /// Bits of what is seen directly; those of what is seen in a mirror are above them.
-const DIRECT: u32 = LIGHTS as u32 * BITS;
+const DIRECT: u32 = MARKED_LIGHTS as u32 * MARK_BITS;
 
 /// Returns what a light that shines adds to the sum of an edge. Each light whose shadows are noted has a power of
 /// two of its own, below those of all other lights, so that no sum of the others changes its bit.
@@ -32,19 +32,19 @@ pub fn light_bit(light: usize) -> f64 {
 /// Out of line: few scenes have so many lights, and the others are faster without it.
 #[cold]
 fn shared_bit(light: usize) -> usize {
-    LIGHTS + (light - LIGHT_BITS) % SHARED
+    MARKED_LIGHTS + (light - LIGHT_BITS) % SHARED_LIGHT_BITS
 }
 
 /// Returns the mark that tells a caster from others, by its number: from 1 on.
 #[inline(always)]
 pub fn mark_of(number: usize) -> f64 {
-    (number % ((1 << BITS) - 1) + 1) as f64
+    (number % ((1 << MARK_BITS) - 1) + 1) as f64
 }
 
 /// Returns the factor of the marks of casters before a light; `None` if its shadows are not told apart.
 #[inline(always)]
 pub fn weight_of(light: usize) -> Option<f64> {
-    (light < LIGHTS).then(|| f64::from(1_u32 << (light as u32 * BITS)))
+    (light < MARKED_LIGHTS).then(|| f64::from(1_u32 << (light as u32 * MARK_BITS)))
 }
 
 /// Combines the shadows of a sample, which are sums of weighted marks: of what is seen directly and in its mirror.
@@ -58,30 +58,40 @@ pub fn joined(direct: u32, mirrored: u32) -> u32 {
 #[inline(always)]
 pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
     let differing = (a ^ b) | (a ^ c) | (a ^ d);
-    noted(a) & noted(b) & noted(c) & noted(d) & noted(differing) != 0
+    nonzero_marks(a)
+        & nonzero_marks(b)
+        & nonzero_marks(c)
+        & nonzero_marks(d)
+        & nonzero_marks(differing)
+        != 0
 }
 
 /// Returns whether each of two lights shines at a corner where a shadow of the other ends nearby: between these
 /// there may be light of both or of neither, and if the lights are equally bright, the corners look alike.
 #[inline(always)]
 pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
-    let [a, b, c, d] = [noted(a), noted(b), noted(c), noted(d)];
+    let [a, b, c, d] = [
+        nonzero_marks(a),
+        nonzero_marks(b),
+        nonzero_marks(c),
+        nonzero_marks(d),
+    ];
     let swapped = |one: u32, other: u32| one & !other != 0 && other & !one != 0;
     swapped(a, b) | swapped(a, c) | swapped(a, d) | swapped(b, c) | swapped(b, d) | swapped(c, d)
 }
 
 /// Returns, for each mark that is not zero, the highest bit of its field; all other bits are 0.
 #[inline(always)]
-fn noted(shadows: u32) -> u32 {
+fn nonzero_marks(shadows: u32) -> u32 {
     const HIGHEST: u32 = {
         let (mut bits, mut mark) = (0, 0);
-        while mark < 2 * LIGHTS {
-            bits |= 1 << (mark as u32 * BITS + BITS - 1);
+        while mark < 2 * MARKED_LIGHTS {
+            bits |= 1 << (mark as u32 * MARK_BITS + MARK_BITS - 1);
             mark += 1;
         }
         bits
     };
-    const OTHERS: u32 = HIGHEST - (HIGHEST >> (BITS - 1));
+    const OTHERS: u32 = HIGHEST - (HIGHEST >> (MARK_BITS - 1));
     (((shadows & OTHERS) + OTHERS) | shadows) & HIGHEST
 }
 
@@ -103,11 +113,13 @@ mod tests {
 
     #[test]
     fn no_sum_of_other_lights_is_taken_for_one_that_is_told_apart() {
-        let others: f64 = (LIGHTS..3000).map(light_bit).sum();
-        for own in 0..LIGHTS {
+        let others: f64 = (MARKED_LIGHTS..3000).map(light_bit).sum();
+        for own in 0..MARKED_LIGHTS {
             let lit = (others + light_bit(own)) as f32 as u32;
-            let told: Vec<u32> = (0..LIGHTS).map(|light| lit >> light & 1).collect();
-            let expected: Vec<u32> = (0..LIGHTS).map(|light| u32::from(light == own)).collect();
+            let told: Vec<u32> = (0..MARKED_LIGHTS).map(|light| lit >> light & 1).collect();
+            let expected: Vec<u32> = (0..MARKED_LIGHTS)
+                .map(|light| u32::from(light == own))
+                .collect();
             assert_eq!(told, expected);
         }
     }
@@ -115,9 +127,9 @@ mod tests {
     #[test]
     fn gaps_are_between_different_shadows_of_one_light() {
         let last = Some(30);
-        for light in 0..LIGHTS {
+        for light in 0..MARKED_LIGHTS {
             let of = |caster: Option<usize>| {
-                let mut casters = [None; LIGHTS];
+                let mut casters = [None; MARKED_LIGHTS];
                 casters[light] = caster;
                 casters
             };
@@ -145,6 +157,6 @@ mod tests {
         assert!(may_swap_lights([one, other, one, other]));
         assert!(may_swap_lights([0, one, one | other, other]));
         assert!(!may_swap_lights([one | other, one, 0, 0]), "one by one");
-        assert!(weight_of(LIGHTS).is_none());
+        assert!(weight_of(MARKED_LIGHTS).is_none());
     }
 }

@@ -113,7 +113,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 gathered.set(lane, &other);
             }
         }
-        gathered.part::<L>(self.token, mixed);
+        gathered.group_by_material::<L>(self.token, mixed);
         Hit {
             here: gathered.mask::<L>(self.token),
             surface: gathered.refine(hit_primitive, rays, nearest.t),

@@ -11,7 +11,8 @@ use super::scan::{Test, TreeScan, scan_lists};
 use super::thin_cull::least_pixels;
 use super::thin_margin::ThinMargin;
 use super::thresholds::{
-    CLOSE, CROWD, LARGEST_SPREAD, ONE_THING, SLIPPING, WIDEST_SPREAD, WIDEST_TO_LIGHTS,
+    CROWD, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_WHEN_CROWDED, ONE_THING,
+    SLIPPING, WIDEST_TO_LIGHTS,
 };
 use super::walk::Stack;
 use crate::plan::PackedMesh;
@@ -31,9 +32,9 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     /// have to be told apart, for ever less of a shadow.
     pub in_meshes: RayCone<L>,
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
-    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`LARGEST_SPREAD`]
+    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`MAX_SPREAD_INTO_MESHES`]
     /// do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look for nothing. In crowded
-    /// scenes, rays to a light look for nothing above [`LARGEST_SPREAD`], and other rays above [`WIDEST_SPREAD`].
+    /// scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and other rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -52,12 +53,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         stack: &mut Stack<L::Real>,
     ) -> L {
         let spread = self.plan.view.spread();
-        let narrow = spread * L::Real::from_f64(LARGEST_SPREAD);
+        let narrow = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
         let widest = match (self.plan.things < CROWD, query.is_to_light) {
             (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
             (false, true) => narrow,
-            (false, false) => spread * L::Real::from_f64(WIDEST_SPREAD),
+            (false, false) => spread * L::Real::from_f64(MAX_SPREAD_WHEN_CROWDED),
         };
         let is_narrow = query.spread.at_most(self.splat(0.0).like(narrow));
         let is_looking = query.spread.at_most(self.splat(0.0).like(widest));
@@ -135,13 +136,13 @@ struct ThinTest<'a, L: SimdFloat> {
     /// Whether the rays look into meshes, and not only at small ones as a whole.
     enters: bool,
     /// While a mesh is tested, the rays for which its parts count.
-    counted: L::Mask,
+    face_lanes: L::Mask,
     /// The width of a pixel around what is treated as one thing.
     cone: RayCone<L>,
     /// The rays that have treated a box around the tested primitive as one thing, bit by bit, and those for which
     /// the primitive still counts.
-    settled: u64,
-    open: L::Mask,
+    merged_lanes: u64,
+    unmerged_lanes: L::Mask,
 }
 
 /// How rays pass a ball.
@@ -165,10 +166,10 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
             query,
             best,
             enters,
-            counted: all,
+            face_lanes: all,
             cone: query.cone,
-            settled: 0,
-            open: all,
+            merged_lanes: 0,
+            unmerged_lanes: all,
         }
     }
 
@@ -194,7 +195,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
         let thin = size.less(width * to.like_f64(SLIPPING)) & zero.less(to) & is_before;
-        (thin & self.counted & self.open, width)
+        (thin & self.face_lanes & self.unmerged_lanes, width)
     }
 
     /// Notes a ball that is `beside` away from the rays, where it counts.
@@ -202,7 +203,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
     fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, beside: L) {
         let width = ball.width;
         // Whether a ray hits what is inside does not matter: it passes closely enough.
-        let beside = beside.max(width * width.like_f64(CLOSE));
+        let beside = beside.max(width * width.like_f64(LEAST_NOTED_DISTANCE));
         let near = pixels(counts, beside, width);
         self.best = self.best.min(near);
     }
@@ -243,13 +244,13 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
         let is_close = entry.less(self.query.reach + ball.width);
-        let counts = is_small & is_thin & is_before & is_ahead & is_close & self.open;
+        let counts = is_small & is_thin & is_before & is_ahead & is_close & self.unmerged_lanes;
         self.note(&ball, counts, beside);
         let others = active & !is_small;
         if !self.enters || !others.any() {
             return None;
         }
-        self.counted = !is_small;
+        self.face_lanes = !is_small;
         self.cone = self.query.in_meshes;
         Some(others)
     }
@@ -267,27 +268,27 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let is_one = (ball.radius + ball.radius).less(width * width.like_f64(ONE_THING));
         let is_thin = width.like(thickness).less(width * width.like_f64(SLIPPING));
         let is_there = zero.less(ball.along) & ball.along.less(self.query.reach + width);
-        let counts = is_one & is_thin & is_there & self.counted & self.open;
+        let counts = is_one & is_thin & is_there & self.face_lanes & self.unmerged_lanes;
         self.note(&ball, counts, ball.off - ball.radius);
         (is_one | !active).bits()
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, settled: u64) -> u64 {
-        let before = self.settled;
-        if settled != before {
-            let is_out = |lane: usize| f64::from(u8::from(settled >> lane & 1 == 1));
+    fn leave_out(&mut self, merged_lanes: u64) -> u64 {
+        let before = self.merged_lanes;
+        if merged_lanes != before {
+            let is_out = |lane: usize| f64::from(u8::from(merged_lanes >> lane & 1 == 1));
             let token = self.best.token();
             let out = L::from_fn(token, |lane| L::Real::from_f64(is_out(lane)));
-            self.open = out.less(out.like(L::Real::ONE));
-            self.settled = settled;
+            self.unmerged_lanes = out.less(out.like(L::Real::ONE));
+            self.merged_lanes = merged_lanes;
         }
         before
     }
 
     #[inline(always)]
     fn leave_mesh(&mut self) {
-        self.counted = self.counted | !self.counted;
+        self.face_lanes = self.face_lanes | !self.face_lanes;
         self.cone = self.query.cone;
     }
 

@@ -3,7 +3,7 @@
 
 use super::bundle::Shaft;
 use super::thin_margin::ThinMargin;
-use super::thresholds::{CROWDED, ONE_THING, SMALL};
+use super::thresholds::{CROWDED, ONE_THING, SMALL_MESH_PIXELS};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
@@ -16,7 +16,7 @@ const MOST_NODES: u32 = 32;
 #[inline(always)]
 pub fn least_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
     let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED);
-    faces.sqrt().max(R::from_f64(SMALL))
+    faces.sqrt().max(R::from_f64(SMALL_MESH_PIXELS))
 }
 
 /// Returns whether any ray of the shaft may pass close to something thin in the trees, at any distance.

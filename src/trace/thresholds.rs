@@ -13,7 +13,7 @@ pub const HIDDEN: f64 = 1.5;
 pub const ONE_THING: f64 = 0.5;
 /// Size in pixels below which a mesh may slip between samples as a whole. With 8, shadows of a row of gates, of 12
 /// faces each, break into dashes: 49 dB instead of 52; a city of 144 boxes takes 0.7 of the rays, for 1 dB less.
-pub const SMALL: f64 = 1.0;
+pub const SMALL_MESH_PIXELS: f64 = 1.0;
 /// Number of faces per pixel of the square around it above which a larger mesh may do so as well. With 16, most of a
 /// bar of 500 faces that is a quarter of a pixel wide and less than six long is missing: 52 dB instead of 61. With
 /// 128, 400 knots of 24,000 faces take twice as long as with this, for 0.5 dB.
@@ -55,7 +55,7 @@ pub const CROWD: usize = 1_000;
 /// what slips between samples: in the image of a strongly curved mirror all of their faces do. Without this limit a
 /// knot of 24,000 faces takes four times as long, for 0.3 dB. In crowded scenes, rays to lights look for nothing
 /// above this limit: if they searched, 10,000 mirror balls would take 1.13 times as long, and be as far off.
-pub const LARGEST_SPREAD: f64 = 24.0;
+pub const MAX_SPREAD_INTO_MESHES: f64 = 24.0;
 /// The same for mirrored rays from whose hits thin things are looked for on the way to lights, in scenes that are
 /// not crowded: without this limit two mirror balls between mirror walls take 1.16 times as long, for 0.1 dB. With a
 /// limit of 24, of 120 scenes of balls, mirrors and slivers eight more would have a pixel off by more than 8.
@@ -63,14 +63,14 @@ pub const WIDEST_TO_LIGHTS: f64 = 60.0;
 /// The same for rays that look for thin things at all in crowded scenes: hardly anything in such a mirror fills a
 /// pixel by itself. Without this limit those balls take 1.2 times as long again, for 0.3 dB; the grid of that error,
 /// 1.1 times.
-pub const WIDEST_SPREAD: f64 = 300.0;
+pub const MAX_SPREAD_WHEN_CROWDED: f64 = 300.0;
 /// Greatest distance from a thing in a cell to the nearest corner, in sides of the cell: half its diagonal, and a
 /// little for rounding.
-pub const NEAR: f64 = 0.75;
+pub const FARTHEST_CORNER: f64 = 0.75;
 /// Least distance in pixels that rays note for what is treated as one thing, even if they go through it: it is
 /// searched for in pixels and their halves, not in smaller cells. This lies between the distances that count as near
 /// in halves and in quarters; if it were equal to one of them, rounding would decide.
-pub const CLOSE: f64 = 0.4 * NEAR;
+pub const LEAST_NOTED_DISTANCE: f64 = 0.4 * FARTHEST_CORNER;
 /// How much something even may deviate, as a share of the range of the corners' colours: the middle of a cell from
 /// the mean of its corners, which an edge between two colours puts at least a quarter away; and colours of one face
 /// from each other.

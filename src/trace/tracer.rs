@@ -368,7 +368,7 @@ impl Tracer {
                 let place = (Region { columns, rows }, part);
                 let messages = BandMessages {
                     messages,
-                    those: Some(those),
+                    only_pixels: Some(those),
                 };
                 let notes = (messages, control);
                 rays += self.piece(seen, place, (Grid::ALL, self.sampling), notes)?;

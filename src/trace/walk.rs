@@ -15,7 +15,7 @@ pub struct StackEntry<R> {
     /// The node that it holds.
     inner: u32,
     /// The rays that have treated a box around it as one thing, bit by bit.
-    settled: u64,
+    merged_lanes: u64,
     /// Distance at which the first ray may enter it.
     near: R,
 }
@@ -93,7 +93,7 @@ pub fn walk<L: SimdFloat>(
                         node: index,
                         place,
                         inner,
-                        settled: 0,
+                        merged_lanes: 0,
                         near,
                     };
                     // Sorted by insertion: there are few.
@@ -131,18 +131,18 @@ pub fn walk<L: SimdFloat>(
     }
 }
 
-/// Visits the thin members that the rays may come close to; the rays in `settled` (bit by bit) do not count from the
+/// Visits the thin members that the rays may come close to; the rays in `merged_lanes` (bit by bit) do not count from the
 /// start. What a ray is shown does not depend on the others of its packet.
 #[inline(always)]
 pub fn walk_thin<L: SimdFloat>(
     bvh: &Bvh<L::Real>,
     bundle: &Bundle<L>,
     margin: &ThinMargin<L::Real>,
-    (stack, settled): (&mut Stack<L::Real>, u64),
+    (stack, merged_lanes): (&mut Stack<L::Real>, u64),
     visitor: &mut impl TreeVisitor<L>,
 ) {
     let all = (1_u64 << L::WIDTH) - 1;
-    let mut settled = settled;
+    let mut merged_lanes = merged_lanes;
     let bottom = stack.len();
     let reach = visitor.reach();
     let (token, farthest, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
@@ -150,7 +150,7 @@ pub fn walk_thin<L: SimdFloat>(
     while let Some(node) = bvh.nodes.get(index as usize) {
         let mut widths = [L::Real::ZERO; GROUP];
         let mut bits = shaft.grazes::<L>(token, node, farthest, margin, &mut widths);
-        visitor.leave_out(settled);
+        visitor.leave_out(merged_lanes);
         while bits != 0 {
             let place = bits.trailing_zeros();
             bits &= bits - 1;
@@ -162,18 +162,18 @@ pub fn walk_thin<L: SimdFloat>(
             match node.child(place as usize) {
                 Child::Member(member) => visitor.meet(member, width, stack),
                 Child::Node(inner) => {
-                    let mut settled = settled;
+                    let mut merged_lanes = merged_lanes;
                     let ball = node.bounds(place as usize).ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
                         let thickness = L::Real::from_single(node.thickness[place as usize]);
-                        settled |= visitor.settle(ball, thickness);
+                        merged_lanes |= visitor.settle(ball, thickness);
                     }
-                    if settled & all != all {
+                    if merged_lanes & all != all {
                         stack.push(StackEntry {
                             node: index,
                             place,
                             inner,
-                            settled,
+                            merged_lanes,
                             near: L::Real::ZERO,
                         });
                     }
@@ -184,6 +184,6 @@ pub fn walk_thin<L: SimdFloat>(
             return;
         }
         let Some(next) = stack.pop() else { return };
-        (index, settled) = (next.inner, next.settled);
+        (index, merged_lanes) = (next.inner, next.merged_lanes);
     }
 }

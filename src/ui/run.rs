@@ -212,7 +212,7 @@ impl App {
         let part = excerpt(self.editor.scene(), self.editor.selection());
         // Another window looks for mesh files in another folder, so only large meshes are copied as file names.
         let whole = if part.faces() <= COPIED_FACES {
-            part.taken_in()
+            part.inlined()
         } else {
             part.clone()
         };

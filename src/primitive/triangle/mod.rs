@@ -12,7 +12,7 @@ mod in_doubt;
 
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
-use packed::WHOLE;
+use packed::SHARES_PER_UNIT;
 pub use packed::{
     Culling, PackedTriangle, Tip, Vertex, corner, count_corner_users, number_corners,
 };
@@ -139,7 +139,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     }
 
     #[inline(always)]
-    fn breadth<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
+    fn blocking_width<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
         let thickness = zero.like(self.thickness);
         let is_left = match self.culling {
@@ -216,7 +216,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let mut least = t.like(Primitive::thickness(self));
         if let Tip::Round(corner, share) = self.tip {
             let width = rays.beside(self.corners[corner as usize]);
-            let share = f64::from(share) / WHOLE;
+            let share = f64::from(share) / SHARES_PER_UNIT;
             size = size.min(width * width.like_f64(share * WIDER_AT_TIPS));
             least = size;
         }

@@ -37,13 +37,15 @@ impl Tip {
     /// [`Self::Round`] for something whose width is `share` times the distance from the corner.
     pub fn round(which: Vertex, share: f64) -> Self {
         // With zero, it would be thin everywhere.
-        let share = (share * WHOLE).ceil().clamp(1.0, f64::from(u8::MAX));
+        let share = (share * SHARES_PER_UNIT)
+            .ceil()
+            .clamp(1.0, f64::from(u8::MAX));
         Self::Round(which, share as u8)
     }
 }
 
 /// The share of a tip whose width equals the distance from it.
-pub const WHOLE: f64 = 64.0;
+pub const SHARES_PER_UNIT: f64 = 64.0;
 
 /// One of the corners of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

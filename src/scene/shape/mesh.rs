@@ -33,7 +33,7 @@ pub struct Mesh {
 /// The serialized form of a mesh.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Mesh", deny_unknown_fields)]
-struct MeshText {
+struct SerializedMesh {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     file: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -106,7 +106,7 @@ impl Serialize for Mesh {
             ),
             MeshSource::File { path, .. } => (Some(path.clone()), Vec::new(), Vec::new()),
         };
-        let text = MeshText {
+        let text = SerializedMesh {
             file: path,
             points,
             faces,
@@ -121,7 +121,7 @@ impl Serialize for Mesh {
 
 impl<'de> Deserialize<'de> for Mesh {
     fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
-        let text = MeshText::deserialize(file)?;
+        let text = SerializedMesh::deserialize(file)?;
         let source = match text.file {
             Some(_) if !text.points.is_empty() || !text.faces.is_empty() => {
                 return Err(D::Error::custom(

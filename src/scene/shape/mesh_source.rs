@@ -148,7 +148,7 @@ impl MeshSource {
 
     /// Returns the triangles of a file as an inline source; `None` if the source is inline already, or could not be
     /// read.
-    pub fn taken_in(&self) -> Option<Self> {
+    pub fn inlined(&self) -> Option<Self> {
         match self {
             Self::File {
                 triangles,

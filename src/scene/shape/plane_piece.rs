@@ -88,13 +88,13 @@ impl PlanePiece {
     }
 
     /// Returns whether a unit direction is perpendicular to the plane.
-    pub fn is_across(&self, direction: DVec3) -> bool {
+    pub fn is_perpendicular_to(&self, direction: DVec3) -> bool {
         direction.cross(self.normal).length() <= ALONG_NORMAL
     }
 
     /// Returns the largest distance from the plane, in world units, at which points count as on it, if their
     /// coordinates relative to `centre` are at most `farthest`.
-    pub fn height_in(&self, centre: DVec3, farthest: f64) -> f64 {
+    pub fn plane_tolerance(&self, centre: DVec3, farthest: f64) -> f64 {
         IN_PLANE * farthest.max((self.point - centre).abs().max_element())
     }
 
@@ -122,7 +122,7 @@ impl PlanePiece {
 
     /// Returns whether all of the smaller piece is within `height` world units of the plane of the larger one, and
     /// they overlap.
-    pub fn is_beside(&self, other: &Self, height: f64) -> bool {
+    pub fn is_layered_with(&self, other: &Self, height: f64) -> bool {
         if self.size() < other.size() {
             self.lies_over(other, height)
         } else {
@@ -155,17 +155,19 @@ impl PlanePiece {
     /// point of the other.
     fn overlaps(&self, other: &Self, normal: DVec3) -> bool {
         let border = OVER_BORDER * self.size().min(other.size());
-        let ways = self.ways(other, normal).chain(other.ways(self, normal));
-        let mut ways = ways.filter_map(DVec3::try_normalize);
-        ways.all(|way| {
+        let separating_axes = self
+            .separating_axes(other, normal)
+            .chain(other.separating_axes(self, normal));
+        let mut separating_axes = separating_axes.filter_map(DVec3::try_normalize);
+        separating_axes.all(|way| {
             let (own, theirs) = (self.interval(way), other.interval(way));
             own.0 + border < theirs.1 && theirs.0 + border < own.1
         })
     }
 
     /// Returns the normals of lines that may separate this piece from another one; their lengths are arbitrary.
-    fn ways(&self, other: &Self, normal: DVec3) -> impl Iterator<Item = DVec3> {
-        let ways = match (self.outline, other.outline) {
+    fn separating_axes(&self, other: &Self, normal: DVec3) -> impl Iterator<Item = DVec3> {
+        let separating_axes = match (self.outline, other.outline) {
             (Outline::Endless, _) => [DVec3::ZERO; 3],
             (Outline::Triangle([a, b, c]), _) => {
                 [b - a, c - b, a - c].map(|side| side.cross(normal))
@@ -175,7 +177,7 @@ impl PlanePiece {
             }
             (Outline::Disc(_), _) => [other.point - self.point; 3],
         };
-        ways.into_iter()
+        separating_axes.into_iter()
     }
 
     /// Returns the interval that the piece covers along a unit direction in its plane.
@@ -243,9 +245,15 @@ mod tests {
             point: DVec3::new(x, height, 0.0),
             ..rug
         };
-        assert!(rug.is_beside(&lifted(0.5, 1e-3), 2e-3) && lifted(0.5, 1e-3).is_beside(&rug, 2e-3));
-        assert!(!rug.is_beside(&lifted(0.5, 3e-3), 2e-3), "too far");
-        assert!(!rug.is_beside(&lifted(2.1, 1e-3), 2e-3), "side by side");
+        assert!(
+            rug.is_layered_with(&lifted(0.5, 1e-3), 2e-3)
+                && lifted(0.5, 1e-3).is_layered_with(&rug, 2e-3)
+        );
+        assert!(!rug.is_layered_with(&lifted(0.5, 3e-3), 2e-3), "too far");
+        assert!(
+            !rug.is_layered_with(&lifted(2.1, 1e-3), 2e-3),
+            "side by side"
+        );
     }
 
     #[test]

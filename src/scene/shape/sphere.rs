@@ -22,7 +22,7 @@ pub struct Sphere {
 /// the rounding left by moving or scaling there and back.
 const SAME: f64 = 64.0 * f64::EPSILON;
 /// A direction along which the positions of spheres in regular rows differ.
-const ASKEW: DVec3 = DVec3::new(0.791_287_3, 0.529_103_7, 0.306_419_1);
+const SORT_DIRECTION: DVec3 = DVec3::new(0.791_287_3, 0.529_103_7, 0.306_419_1);
 
 impl Sphere {
     /// Returns whether both spheres are identical up to rounding, so that rounding would decide which is seen.
@@ -38,7 +38,7 @@ impl Sphere {
 
     /// The projection of the centre on a fixed direction, in world units: nearby spheres have nearby values.
     pub fn along(&self) -> f64 {
-        self.center.dot(ASKEW)
+        self.center.dot(SORT_DIRECTION)
     }
 
     /// The largest difference of [`Self::along`] between this sphere and an identical one.

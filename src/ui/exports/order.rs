@@ -43,7 +43,7 @@ impl ExportOrder {
         let place = folder.map(|folder| Recovery::new(&folder.join(FOLDER)));
         let place = place.map(|place| place.map(Arc::new).map_err(|error| error.to_string()));
         // Mesh triangles are stored inline: the mesh files may have changed when the export is resumed.
-        let document = Document::of(editor.scene().taken_in());
+        let document = Document::of(editor.scene().inlined());
         let path = editor.path().map(Path::to_owned);
         let writing = place.clone().map(|place| {
             let settings = settings.clone();
