@@ -37,7 +37,7 @@ use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
 /// What is said where a picture that is being written keeps the window open.
-const CLOSING: &str = "Glint closes when the picture is written; Cancel gives it up";
+const CLOSING: &str = "Glint closes once the picture is saved; Cancel discards the picture";
 /// Where the list of recent files is kept between runs.
 const RECENT_KEY: &str = "recent files";
 /// Where it is kept which panels are shown.

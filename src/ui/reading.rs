@@ -101,7 +101,7 @@ impl Reading {
     /// What is said where it came too late.
     pub fn describe_late(&self) -> String {
         let name = self.name();
-        format!("{name} was not imported: the scene that it was for is not open any more")
+        format!("{name} was not imported: the scene it was meant for is no longer open")
     }
 
     /// What is said where the reader stopped with a fault of its own.
@@ -120,7 +120,7 @@ impl Reading {
     pub fn describe(&self, is_free: bool) -> String {
         let name = self.name();
         if !is_free {
-            return format!("{name} waits for the open question");
+            return format!("{name} is waiting for your answer");
         }
         let seconds = self.since.elapsed().as_secs_f64();
         format!("reading {name}, {seconds:.0} s")
