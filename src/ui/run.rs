@@ -334,8 +334,7 @@ impl App {
                 let is_down = *command == Command::MoveDown;
                 let Some(edit) = step(editor, is_down) else {
                     let side = if is_down { "below" } else { "above" };
-                    return editor
-                        .notify(format!("Nothing is {side} it in its list, or in its group"));
+                    return editor.notify(format!("Nothing is {side} it in its list or group"));
                 };
                 Action::Edit(edit)
             }

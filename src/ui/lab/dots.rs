@@ -192,11 +192,7 @@ fn wrapped(text: &str) -> String {
 /// The figures of a measurement, one per line.
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
-        let doubt = if dot.is_doubtful() {
-            " (unreliable)"
-        } else {
-            ""
-        };
+        let doubt = if dot.is_doubtful() { " (noisy)" } else { "" };
         // As a deviation to either side of the median.
         let spread = timing.spread * 50.0;
         format!(
