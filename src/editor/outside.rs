@@ -64,7 +64,7 @@ impl Editor {
         self.selection = self.followed(&theirs);
         self.set_scene(theirs);
         self.notify_of_step(format!(
-            "{} was changed by another program and read anew; undo brings yours back",
+            "{} was changed by another program and reloaded; undo brings yours back",
             self.title()
         ));
         self.tell_missing_meshes();
@@ -112,7 +112,7 @@ impl Editor {
             [one, more @ ..] => format!("{one} and {} more were", more.len()),
         };
         if !who.is_empty() {
-            self.notify(format!("{who} changed by another program and read anew"));
+            self.notify(format!("{who} changed by another program and reloaded"));
         }
         self.tell_missing_meshes();
     }
@@ -142,18 +142,15 @@ impl Editor {
         let elsewhere = &elsewhere - &lost;
         let told = |names: BTreeSet<&str>, why| {
             let names = names.into_iter().collect::<Vec<_>>().join(", ");
-            let words = format!("; what was in {names} is in the scene file now: {why}");
+            let words = format!("; the contents of {names} are in the scene file now: {why}");
             if names.is_empty() {
                 String::new()
             } else {
                 words
             }
         };
-        told(lost, "that is gone, or cannot be read any more")
-            + &told(
-                elsewhere,
-                "that lies in another folder, and is not followed any more",
-            )
+        told(lost, "missing, or no longer readable")
+            + &told(elsewhere, "in another folder, and no longer followed")
     }
 
     /// Returns a copied part of the scene with the current contents of mesh files.

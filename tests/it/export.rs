@@ -1002,14 +1002,14 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.window.get_by_label("Start export").click();
     harness.window.step();
     // A second click requests nothing more.
-    see(&mut harness, "These files are being made");
+    see(&mut harness, "These files are being written");
     harness.window.get_by_label("Start export").click();
     finish(&mut harness);
     let rows = harness
         .window
         .query_all_by_label_contains("14 frames and frames.gif");
     assert_eq!(rows.count(), 1);
-    see(&mut harness, "all 14 frames are there, then frames.gif");
+    see(&mut harness, "all 14 frames already exist, then frames.gif");
     harness.type_name("frames", "nonsense");
     harness
         .window
@@ -1056,7 +1056,7 @@ fn the_size_of_frames_keeps_the_shape_of_the_picture_until_it_is_freed() {
     assert_eq!(size(&harness), ["640 px", "400 px"]);
     harness.type_into("export height", "1600");
     assert_eq!(size(&harness), ["2560 px", "1600 px"]);
-    harness.click("keep the shape of the picture");
+    harness.click("keep aspect ratio");
     harness.type_into("export width", "320");
     assert_eq!(size(&harness), ["320 px", "1600 px"]);
 }
@@ -1078,7 +1078,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     see(&mut harness, "Quit while exporting?");
     harness
         .window
-        .get_by_label_contains("the window of exports resumes it next time");
+        .get_by_label_contains("Export animation can resume it next time");
     harness.window.get_by_label("Stay").click();
     harness.window.step();
     harness.window.step();
@@ -1094,7 +1094,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.window.key_press(Key::O);
     harness.window.step();
     harness.window.key_press_modifiers(CTRL, Key::Q);
-    see(&mut harness, "the window of exports resumes it next time");
+    see(&mut harness, "Export animation can resume it next time");
     harness.window.get_by_label("Don't save").click();
     for _ in 0..3 {
         harness.window.step();

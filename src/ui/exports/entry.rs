@@ -96,7 +96,7 @@ impl Entry {
             let name = &self.name;
             editor.report_error_in(
                 UNKEPT,
-                format!("{name} cannot be kept ({why}): if Glint ends before it is done, it has to be asked for again"),
+                format!("{name} cannot be stored ({why}): if Glint quits before it is done, it must be started again"),
             );
         }
         if let Some(video) = &mut self.video
@@ -109,7 +109,7 @@ impl Entry {
                 }
                 VideoState::Stopped => {
                     let path = video.path.display();
-                    editor.notify(format!("{path} is given up; its frames stay"));
+                    editor.notify(format!("{path} was cancelled; its frames are kept"));
                     self.end();
                 }
                 VideoState::Failed(error) => {
@@ -125,7 +125,7 @@ impl Entry {
             if let Some(ExportOrder { name, settings, .. }) = &self.order {
                 let folder = &settings.folder;
                 editor.notify(format!(
-                    "{name} is given up; what is done of it stays in {folder}"
+                    "{name} was cancelled; finished frames are kept in {folder}"
                 ));
             }
             self.end();
@@ -142,8 +142,7 @@ impl Entry {
                 None
             }
             Err(error) => {
-                let on =
-                    "what is done stays, and Resume in the window of exports goes on from there";
+                let on = "finished frames are kept; Resume in the Export animation window continues from there";
                 editor.report_error_in(EXPORT, format!("{error}; {on}"));
                 let why = error.clone();
                 self.order.take().map(|order| order.failed(why))
@@ -179,7 +178,7 @@ impl Entry {
             let folder = folder.display();
             editor.report_error_in(
                 EXPORT,
-                format!("This desktop has no program that shows {folder}"),
+                format!("This desktop has no program to open {folder}"),
             );
         }
     }

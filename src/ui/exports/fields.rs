@@ -284,14 +284,14 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         for (name, hint, format, antialias, half) in [
             (
                 "PPM",
-                "As the original program: one sample, rayTrace%d.ppm",
+                "Like the original program: one sample, rayTrace%d.ppm",
                 Format::Ppm,
                 Sampling::Centres,
                 false,
             ),
             (
                 "PNG",
-                "Clean edges, compressed, numbers of four digits",
+                "Clean edges, compressed, four-digit numbers",
                 Format::Png,
                 Sampling::ADAPTIVE,
                 false,
@@ -358,7 +358,7 @@ fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
 fn names(ui: &mut Ui, settings: &mut Settings) {
     let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
     ui.add_sized([140.0, ROW], name)
-        .hint("%d is the number, %05d the number with five digits")
+        .hint("%d is the frame number, %05d the same with five digits")
         .accessible_name("names");
     if let (Ok(pattern), Ok(frames)) = (
         Pattern::parse(&settings.name),
@@ -395,8 +395,8 @@ fn picture(ui: &mut Ui, settings: &mut Settings) {
     settings.set_size(size);
     let mut keeps_shape = !settings.is_free;
     ui.toggle_value(&mut keeps_shape, icons::text(icons::LINK))
-        .accessible_name("keep the shape of the picture")
-        .hint("Width and height follow each other, in the shape of the scene's picture");
+        .accessible_name("keep aspect ratio")
+        .hint("Width and height follow each other, in the aspect ratio of the scene's picture");
     settings.is_free = !keeps_shape;
     ComboBox::from_id_salt("export antialias")
         .selected_text(settings.antialias.id())
@@ -414,7 +414,7 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
     let mut fps = settings.fps;
     let field = Field {
         name: "export frames per second",
-        hint: "Of the frames and the video; the flight stays as it is",
+        hint: "Of the frames and the video; the flight does not change",
         unit: " fps",
         default: fps,
         range: FRAME_RATES,
@@ -425,8 +425,8 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
     ui.weak("video");
     for video in std::iter::once(None).chain(Video::ALL.map(Some)) {
         let hint = match video {
-            None => "Only frames",
-            Some(video) if video.needs_ffmpeg() => "Made by ffmpeg, if that is installed",
+            None => "Frames only",
+            Some(video) if video.needs_ffmpeg() => "Made by ffmpeg, if it is installed",
             Some(_) => "Made by Glint itself",
         };
         ui.selectable_value(&mut settings.video, video, video_word(video))

@@ -144,11 +144,11 @@ impl Forecast {
         let (missing, what) = match &self.found {
             None => (
                 total,
-                format!("{}, looking into the folder…", counted(total, "frame")),
+                format!("{}, checking the folder…", counted(total, "frame")),
             ),
             Some(Err(error)) => (total, error.clone()),
             Some(Ok(Missing { count: 0, .. })) => {
-                (0, format!("all {} are there", counted(total, "frame")))
+                (0, format!("all {} already exist", counted(total, "frame")))
             }
             Some(Ok(missing)) => (missing.count, missing.describe(total)),
         };
@@ -178,7 +178,7 @@ impl Forecast {
             let replaced = match missing {
                 Some(Missing {
                     has_video: true, ..
-                }) => " in place of an older one",
+                }) => " (replaces an older one)",
                 _ => "",
             };
             let looped = match missing {
@@ -205,8 +205,8 @@ impl Missing {
     fn describe(&self, total: usize) -> String {
         let stay = match total - self.count {
             0 => String::new(),
-            1 => ", 1 is there and stays".to_owned(),
-            there => format!(", {there} are there and stay"),
+            1 => ", 1 exists and is kept".to_owned(),
+            there => format!(", {there} exist and are kept"),
         };
         let replace = match self.replaced {
             0 => String::new(),

@@ -272,7 +272,7 @@ impl Exports {
                 ui.colored_label(colors.error, error);
             }
             Ok(_) if is_making => {
-                ui.label("These files are being made, see below");
+                ui.label("These files are being written, see below");
             }
             Ok(sequence) => {
                 let forecast = &mut self.forecast;
@@ -370,7 +370,7 @@ impl Exports {
             ui.horizontal(|ui| {
                 let resume = ui
                     .button("Resume")
-                    .hint("With the scene as it was then; what is done stays");
+                    .hint("Uses the scene as it was then; finished frames are kept");
                 if resume.clicked() {
                     resumed = Some(index);
                 }
@@ -383,7 +383,7 @@ impl Exports {
             let order = self.interrupted.remove(index);
             match order.sequence() {
                 Ok(sequence) if self.is_making(&order.settings, &sequence) => {
-                    editor.notify("Another export makes such files: wait for it".to_owned());
+                    editor.notify("Another export is writing these files: wait for it".to_owned());
                     self.interrupted.push(order);
                 }
                 Ok(sequence) => self.begin(order, sequence, editor, pictures),

@@ -49,7 +49,8 @@ impl ExportOrder {
             let settings = settings.clone();
             Background::start("glint-order", move || {
                 let place = place?;
-                let text = text_of(&settings, document).ok_or("it has no text")?;
+                let text =
+                    text_of(&settings, document).ok_or("the scene cannot be written as text")?;
                 let kept = place.keep(&text, path.as_deref(), None);
                 kept.map_err(|error| error.to_string())
             })

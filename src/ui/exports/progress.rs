@@ -28,7 +28,7 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     let text = match (&state.ended, video) {
         (Some(Ok(())), Some(video)) => return video_progress(video),
         (Some(Ok(())), None) if state.done.written == 0 => {
-            format!("{}, all there already", counted(done, "frame"))
+            format!("{}, all already there", counted(done, "frame"))
         }
         (Some(Ok(())), None) => format!("{}, {busy:.1} s", counted(done, "frame")),
         (Some(Err(_)), _) => format!("{done} of {total}, failed"),
@@ -58,10 +58,7 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
             (share, format!("{name}: {done} of {total}{left}"))
         }
         VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
-        VideoState::Stopped => (
-            1.0,
-            format!("{}, the video given up", counted(total, "frame")),
-        ),
+        VideoState::Stopped => (1.0, format!("{}, video cancelled", counted(total, "frame"))),
         VideoState::Failed(_) => (1.0, format!("{}, but no video", counted(total, "frame"))),
     }
 }
@@ -93,7 +90,7 @@ pub fn show_state(
         if let Some(video) = making {
             // Same layout as while the frames were made, so that a click meant for one button does not hit another.
             ui.add_enabled(false, Button::new("Pause"));
-            if ui.button("Cancel").hint("Its frames stay").clicked() {
+            if ui.button("Cancel").hint("Its frames are kept").clicked() {
                 video.stop();
             }
             return false;
@@ -110,7 +107,7 @@ pub fn show_state(
         }
         let cancel = ui
             .button("Cancel")
-            .hint("What is written stays; exporting again goes on from there");
+            .hint("Finished frames are kept; exporting again continues from there");
         if cancel.clicked() {
             pictures.worker().forget_export(state.id);
         }

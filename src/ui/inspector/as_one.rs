@@ -6,7 +6,7 @@ use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{Mesh, Object, Scene, Shape};
 
 /// Why a group cannot be stretched.
-const SHEARED: &str = "A group with parts that are turned, or no meshes, is stretched by one factor for x, y and z alone";
+const SHEARED: &str = "A group with rotated parts, or parts that are not meshes, can only be scaled by the same factor in x, y and z";
 
 /// A transformation of all members.
 #[derive(Clone, Copy)]
@@ -50,7 +50,7 @@ impl Change {
 
     fn verb(self) -> &'static str {
         match self {
-            Self::Turn(_) => "Turn",
+            Self::Turn(_) => "Rotate",
             Self::Grow(_) | Self::Stretch(_) => "Resize",
         }
     }

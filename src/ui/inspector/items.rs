@@ -50,7 +50,7 @@ pub fn light(
         ),
         &mut light.intensity,
     );
-    rows.toggle("on", "Whether it shines at all", &mut light.visible);
+    rows.toggle("on", "Whether the light is on", &mut light.visible);
     rows.heading("Marker");
     let mut has_marker = light.marker.is_some();
     rows.toggle(
@@ -139,7 +139,7 @@ fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
         .map(|name| (name.clone(), name.clone()));
     rows.choice(
         COLOR_PACK,
-        "The material, shared by everything that names it",
+        "The material, shared by everything that uses it",
         name,
         options,
     );
@@ -167,7 +167,7 @@ pub fn object(
     shape_rows(&mut rows, &mut object.shape);
     rows.toggle(
         "visible",
-        "An invisible object casts no shadow and no reflection",
+        "An invisible object casts no shadow and has no reflection",
         &mut object.visible,
     );
     if is_alone {
@@ -206,7 +206,8 @@ pub fn object(
 fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     match shape {
         Shape::Triangle(_) => {
-            let hint = "Make one mesh of this triangle and all that share corners with it";
+            let hint =
+                "Join this triangle and all that are connected by shared corners into one mesh";
             if tool(rows, "Join connected", hint, true) {
                 out.commands.push(Command::Join);
             }
@@ -217,7 +218,8 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
             if let Some(problem) = mesh.source.problem() {
                 rows.ui.label(problem);
             }
-            let hint = format!("Make an object of each triangle, up to {MOST_SEPARATE} of them");
+            let hint =
+                format!("Make each triangle an object of its own, up to {MOST_SEPARATE} of them");
             if tool(rows, "Separate", &hint, mesh.is_separable()) {
                 out.commands.push(Command::Separate);
             }
@@ -274,7 +276,7 @@ pub fn pack(
     let mut both = pack.diffuse;
     rows.color(
         BOTH,
-        "Ambient and diffuse at once: what most things are painted in",
+        "Ambient and diffuse together: the colour of most objects",
         defaults.diffuse,
         &mut both,
     );
@@ -313,7 +315,7 @@ pub fn pack(
     );
     rows.toggle(
         "reflective",
-        "Whether the surface mirrors the scene: through its specular color, as bright as all lights together",
+        "Whether the surface mirrors the scene; reflections are multiplied by the specular color and the sum of all light intensities",
         &mut pack.reflective,
     );
     if pack == *before {

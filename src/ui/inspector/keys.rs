@@ -47,8 +47,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let paces = places.iter().filter_map(|place| animation.at_place(*place));
     let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
     let different = [
-        ("way", paces.iter().any(|(way, _)| *way != pace.0)),
-        ("pace", paces.iter().any(|(_, easing)| *easing != pace.1)),
+        ("interpolation", paces.iter().any(|(way, _)| *way != pace.0)),
+        ("easing", paces.iter().any(|(_, easing)| *easing != pace.1)),
     ];
     tell_different(
         ui,
@@ -63,7 +63,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     // With several keys, choosing the shown way or pace again applies it to those that differ.
     let chosen = rows.chosen().map(|chosen| chosen.field);
-    let chosen = chosen.filter(|field| only.is_none() && ["way", "pace"].contains(field));
+    let chosen =
+        chosen.filter(|field| only.is_none() && ["interpolation", "easing"].contains(field));
     let changed = rows.changed().or(chosen);
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
@@ -73,12 +74,12 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     } else if new_pace != pace || only.is_none() && changed.is_some() {
         // With several keys, each keeps the part that was not changed.
         let (way, easing) = new_pace;
-        let (changed, label) = if changed == Some("pace") {
+        let (changed, label) = if changed == Some("easing") {
             let changed = animation.with_pace(places, |(_, each)| *each = easing);
-            (changed, "Key: pace")
+            (changed, "Key: easing")
         } else {
             let changed = animation.with_pace(places, |(each, _)| *each = way);
-            (changed, "Key: way")
+            (changed, "Key: interpolation")
         };
         out.edit(Edit::animation(changed, label));
     }
@@ -109,16 +110,16 @@ fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> O
 }
 
 fn intensity_field() -> Field {
-    fraction("intensity", "How bright it is at that time, 0–1", 1.0)
+    fraction("intensity", "Brightness at that time, 0–1", 1.0)
 }
 
 fn point_field(target: &Target) -> Field {
     match target {
         Target::ObjectRotation(_) => {
-            let hint = "How it is turned at that time: about x, then y, then z";
+            let hint = "Rotation at that time: about x, then y, then z";
             angle("rotation", hint)
         }
-        _ => coordinate("position", "Where it is at that time, in world units"),
+        _ => coordinate("position", "Position at that time, in world units"),
     }
 }
 
@@ -177,10 +178,10 @@ fn drag_id() -> Id {
 
 fn time_field(is_only: bool) -> Field {
     let (name, hint) = if is_only {
-        let hint = "Seconds from the start; it takes the place of a key that is there";
+        let hint = "Seconds from the start; replaces a key that is already there";
         ("time", hint)
     } else {
-        let hint = "Seconds from the start to the earliest of them; the others follow";
+        let hint = "Seconds from the start to the earliest of them; the others move along";
         ("first at", hint)
     };
     Field {
@@ -197,8 +198,8 @@ fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpola
     let ways = key_ways(editor, editor.selection().keys(), *way);
     let can_orbit = ways.len() > STAYING.len();
     rows.choice(
-        "way",
-        "How it goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
+        "interpolation",
+        "Interpolation to the next key.\nsmooth: along a curve\nlinear: straight\nhold: stays, then jumps\norbit: along an arc around a point",
         way,
         ways.into_iter().map(|way| (way, way.name().to_owned())),
     );
@@ -210,8 +211,8 @@ fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpola
         rows.vector(&field, before, around);
     }
     rows.choice(
-        "pace",
-        "How fast, on the way to the next key",
+        "easing",
+        "How the speed changes on the way to the next key",
         pace,
         Easing::ALL.map(|easing| (easing, easing.name().to_owned())),
     );
@@ -241,7 +242,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let only = places.first().filter(|_| places.len() == 1);
     let is_of_camera = only.is_some_and(|only| only.track.is_none());
     let overwrite = ui.add_enabled(is_of_camera, Button::new("Overwrite with view"));
-    let hint = "Put the camera of the view into this key";
+    let hint = "Set this key to the current view";
     if overwrite.hint(hint).clicked() {
         let view = editor.shown().camera.clone();
         let changed = animation.with_each(places, |key| key.value = view.clone());
@@ -249,7 +250,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let go = ui.add_enabled(only.is_some(), Button::new("Go there"));
     let there = only.and_then(|only| animation.at_place(*only));
-    if go.hint("Put the playhead on this key").clicked()
+    if go.hint("Move the playhead to this key").clicked()
         && let Some((time, _)) = there
     {
         out.time(Time::Seek(time));
@@ -314,7 +315,7 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiReq
             let text = (icons::text(icons::KEY), format!("{name}{count}"));
             let button = Button::selectable(has_key, text);
             let hint = if has_key {
-                "Take the key at the playhead away"
+                "Remove the key at the playhead"
             } else {
                 "Set a key at the playhead; from then on, changes set keys"
             };

@@ -34,23 +34,24 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     tell_different(ui, differences(scene, selected, last).into_iter());
     let name = last.name(scene).unwrap_or_default();
     let moves = if group.is_some() {
-        "a position, a rotation or a scale is that of the group"
+        "position, rotation and scale are those of the group"
     } else {
-        "a position that is dragged moves them together"
+        "dragging a position moves them together"
     };
     ui.weak(format!(
-        "These are the values of {name}. A change is made to all that have the property; {moves}."
+        "These are the values of {name}. A change applies to all items that have the property; {moves}."
     ));
     let can_join = is_enabled(&Command::Join, editor);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
-    let hint = "Make one mesh of these triangles and meshes, with the name and the color pack of the first";
+    let hint =
+        "Join these triangles and meshes into one mesh with the name and color pack of the first";
     if join.hint(hint).on_disabled_hover_text(hint).clicked() {
         out.commands.push(Command::Join);
     }
     if selected.len() <= MOST {
         keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
     } else {
-        ui.weak(format!("Keys are set for up to {MOST} things at once."));
+        ui.weak(format!("Keys can be set for up to {MOST} items at once."));
     }
     ui.add_space(GRID);
     let mut own = UiRequests::default();

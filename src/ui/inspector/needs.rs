@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
     let response = header.show(ui, |ui| {
         for need in lines(ui, editor).iter() {
             ui.add_space(GRID / 2.0);
-            ui.label(&need.what).hint(format!("Spares {}.", need.saves));
+            ui.label(&need.what).hint(format!("Saves: {}", need.saves));
             ui.label(
                 RichText::new(format!("because {}", need.why))
                     .small()

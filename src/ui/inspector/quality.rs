@@ -15,7 +15,7 @@ const GOALS: [(Option<Goal>, &str); 5] = [
     (None, "as set below"),
     (
         Some(Goal::Within(EIGHT_BIT_FLOOR)),
-        "automatic: below what 8 bits show",
+        "automatic: below 8-bit rounding",
     ),
     (
         Some(Goal::Within(FIFTY_DECIBELS)),
@@ -74,8 +74,8 @@ impl Quality {
         let asked = self.asked.as_ref().map(|asked| asked.goal);
         let before = asked.or(self.in_use(editor).map(|choice| choice.goal));
         let mut goal = before;
-        let hint = "Measures the samplings on this scene, in the size of its still picture, and takes the cheapest \
-            that is close enough, or the closest that is fast enough (one undo step); Needs tells why";
+        let hint = "Measures the samplings on this scene at the size of its still picture and uses the cheapest \
+            that is accurate enough, or the most accurate that is fast enough (one undo step); Needs tells why";
         let options = GOALS.map(|(goal, words)| (goal, words.to_owned()));
         rows.choice("quality", hint, &mut goal, options);
         if goal != before {

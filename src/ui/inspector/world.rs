@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     );
     rows.toggle(
         "light markers",
-        "Light visualization: whether the markers of lights are seen (I on, U off)",
+        "Light visualization: whether light markers are shown (I on, U off)",
         &mut markers,
     );
     if ambient != scene.ambient_intensity {
@@ -85,7 +85,7 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
     }
     let reflections = Field {
         name: "reflections",
-        hint: "How often light may be mirrored on its way to the eye",
+        hint: "How many times light may be reflected on its way to the eye",
         unit: "",
         default: f64::from(defaults.reflection_limit),
         range: 0.0..=f64::from(MAX_REFLECTIONS),

@@ -31,22 +31,22 @@ pub const FACES: [(Face, &str, &str); 7] = [
     (
         Face::Off(8),
         "×8",
-        "How far each channel is off, eight times enlarged",
+        "How far each channel is off, magnified 8 times",
     ),
     (
         Face::Off(64),
         "×64",
-        "How far each channel is off, 64 times enlarged",
+        "How far each channel is off, magnified 64 times",
     ),
     (
         Face::Signed(8),
         "Signed ×8",
-        "Too bright is above grey, too dark below; eight times enlarged",
+        "Above grey is too bright, below too dark; magnified 8 times",
     ),
     (
         Face::Signed(64),
         "Signed ×64",
-        "Too bright is above grey, too dark below; 64 times enlarged",
+        "Above grey is too bright, below too dark; magnified 64 times",
     ),
 ];
 

@@ -17,17 +17,16 @@ use crate::ui::hint::Hinted as _;
 fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {
     let word = "Use this";
     if candidate.family == Family::Referee {
-        let hint = "It is another program, and only looked at here";
+        let hint = "Another program, shown only for comparison";
         (false, word, hint)
     } else if candidate.model == Model::Unculled {
-        (false, word, "It is the default, with nothing spared")
+        (false, word, "The default method, with no work skipped")
     } else if candidate.upscale > 1 {
-        (false, word, "A scene is never traced smaller than it is")
+        (false, word, "A scene is never traced at a reduced size")
     } else if is_used {
         (false, "In use", "The scene is traced with these settings")
     } else if candidate.model == Model::Everything {
-        let hint =
-            "A scene cannot ask for what it does not need; its formulas are used without that";
+        let hint = "A scene cannot ask for unnecessary work; only the formulas are adopted";
         (true, word, hint)
     } else {
         let hint = "Trace the scene with these settings (one undo step)";
@@ -50,7 +49,7 @@ impl Lab {
             .and_then(|index| self.study.as_ref()?.measurements.get(index));
         let Some(dot) = chosen else {
             if !dots.is_empty() {
-                ui.weak("Click a dot to look at its picture.");
+                ui.weak("Click a dot to see its picture.");
             }
             return;
         };
@@ -84,7 +83,7 @@ impl Lab {
         ui.add_space(GRID / 2.0);
         ui.label(RichText::new(figures(dot)).monospace());
         if equals.len() > 1 {
-            ui.weak("One dot with");
+            ui.weak("Shares its dot with");
             ui.horizontal_wrapped(|ui| {
                 let chosen = self.chosen;
                 let others = equals.iter().filter(|(index, _)| Some(*index) != chosen);

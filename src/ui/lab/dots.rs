@@ -102,7 +102,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
         error: match view.axes.1 {
             ErrorAxis::Rmse => "RMSE against the reference (0–1)",
             ErrorAxis::Max => "worst channel (0–1)",
-            ErrorAxis::Visible => "share of pixels > 4/255 off",
+            ErrorAxis::Visible => "share of pixels off by > 4/255",
         },
         has_decibels: is_rmse,
         series: series(study, spot_of),
@@ -125,8 +125,8 @@ fn name_of(dot: &Measurement, equals: usize) -> String {
     let name = &dot.candidate.name;
     match equals {
         0 => name.clone(),
-        1 => format!("{name}, and 1 equal way"),
-        _ => format!("{name}, and {equals} equal ways"),
+        1 => format!("{name}, and 1 equal method"),
+        _ => format!("{name}, and {equals} equal methods"),
     }
 }
 
@@ -192,7 +192,7 @@ fn wrapped(text: &str) -> String {
 /// The figures of a measurement, one per line.
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
-        let doubt = if dot.is_doubtful() { " (doubtful)" } else { "" };
+        let doubt = if dot.is_doubtful() { " (noisy)" } else { "" };
         // As a deviation to either side of the median.
         let spread = timing.spread * 50.0;
         format!(

@@ -36,8 +36,8 @@ fn finding(growth: &Growth) -> String {
         return "Time against primitives".to_owned();
     };
     let ready = last.plan_ms;
-    let ready = ready.map(|ms| format!(" (and {:.1} s once, to make the mesh ready)", ms / 1e3));
-    let theirs = ends(Way::Embree).map(|(.., times)| format!(", one by Embree {times:.1} times"));
+    let ready = ready.map(|ms| format!(" (plus {:.1} s once, to prepare the mesh)", ms / 1e3));
+    let theirs = ends(Way::Embree).map(|(.., times)| format!(", with Embree {times:.1} times"));
     format!(
         "From {} to {} faces, a picture takes {times:.1} times as long{}{}",
         first.primitives,
@@ -63,7 +63,7 @@ fn show(ui: &mut Ui, growth: &Growth) {
     let side = growth.side();
     Plot::new("growth chart")
         .x_axis_label("primitives")
-        .y_axis_label(format!("ms per {side}×{side} picture, made ready before"))
+        .y_axis_label(format!("ms per {side}×{side} picture, without preparation"))
         .x_axis_formatter(plain)
         .y_axis_formatter(plain)
         .x_grid_spacer(|input| decades(&input))

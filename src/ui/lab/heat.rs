@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
     }
     let below = pos2(squares.center().x, area.bottom());
     let names = if rows > 1 {
-        format!("{}   (upwards: {})", map.across.name, map.up.name)
+        format!("{}   (vertical: {})", map.across.name, map.up.name)
     } else {
         map.across.name.to_owned()
     };
@@ -140,13 +140,13 @@ fn describe(map: &Map, index: usize) -> String {
     );
     if cell.failures == 0 {
         return format!(
-            "{at}\nnone of {} failed: below {:.1e} with 95 %",
+            "{at}\nnone of {} failed: below {:.1e} with 95 % confidence",
             cell.tries,
             cell.bound()
         );
     }
     format!(
-        "{at}\n{} of {} failed: {:.3} %, below {:.3} % with 95 %",
+        "{at}\n{} of {} failed: {:.3} %, below {:.3} % with 95 % confidence",
         cell.failures,
         cell.tries,
         cell.rate() * 100.0,

@@ -270,7 +270,7 @@ impl Lab {
         ui.vertical_centered(|ui| {
             ui.take_available_height();
             ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
-            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off. The demo takes half a minute.");
+            ui.weak("Every rendering method as a dot: how long it takes on this scene, and how large its error is. Measuring the demo takes half a minute.");
             ui.add_space(GRID);
             if primary(ui, "Measure the scene").clicked() {
                 wish = Some(self.measure(editor));

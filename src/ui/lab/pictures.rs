@@ -90,7 +90,7 @@ fn show_common(ui: &mut Ui, charts: &[Chart]) {
         let error = chart.error;
         let sized = charts.iter().all(|other| other.cost == chart.cost);
         let cost = if sized { &chart.cost } else { "ms per picture" };
-        ui.weak(format!("To the right {cost}, upwards {error}"));
+        ui.weak(format!("Horizontal: {cost}; vertical: {error}"));
     }
     ui.add_space(GRID);
 }

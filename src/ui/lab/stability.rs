@@ -49,27 +49,27 @@ impl Stability {
                 let is_double = scene.render.precision == Precision::Double;
                 match (warning, self.is_used(scene, map)) {
                     _ if stand.is_none() => {
-                        ui.weak("Where your scene stands on this map cannot be said.");
+                        ui.weak("Where your scene is on this map cannot be determined.");
                     }
                     (Some(_), true) if is_double && map.subject.is_of_single_precision() => {
-                        ui.weak("Your scene uses this near where it fails in single precision, and is traced in double.");
+                        ui.weak("Your scene uses this close to where it fails in single precision, and is traced in double.");
                     }
                     (Some(_), true) => {
-                        let text = "Your scene uses this, within a decade of where it fails.";
+                        let text = "Your scene uses this within a factor of 10 of where it fails.";
                         ui.colored_label(palette(ui.ctx()).error, text);
                     }
                     (Some(_), false) => {
-                        ui.weak("Here this would fail your scene, within a decade.");
+                        ui.weak("Your scene is within a factor of 10 of where this would fail.");
                     }
                     _ => {
-                        ui.weak("The frame is where your scene stands.");
+                        ui.weak("The frame marks where your scene is.");
                     }
                 }
                 let asked = map.subject.method_in_use(&scene.render);
                 if let Some(asked) = asked.filter(|asked| *asked != map.method)
                     && self.is_used(scene, map)
                 {
-                    ui.weak(format!("This is {}; your scene has {asked}.", map.method));
+                    ui.weak(format!("This is {}; your scene uses {asked}.", map.method));
                 }
                 let size = ui.available_size() - vec2(GRID, GRID + ROW);
                 let size = size.min(vec2(720.0, 600.0));
@@ -90,11 +90,11 @@ impl Stability {
         }
         if self.has_failed {
             ui.centered_and_justified(|ui| {
-                ui.weak("The trying of the formulas has stopped with a fault of its own.")
+                ui.weak("Testing the formulas stopped because of an internal error.")
             });
             return;
         }
-        ui.centered_and_justified(|ui| ui.weak("Trying every formula…"));
+        ui.centered_and_justified(|ui| ui.weak("Testing every formula…"));
         ui.request_repaint_after(std::time::Duration::from_millis(100));
     }
 
@@ -135,7 +135,7 @@ impl Stability {
 /// Shows the colour scale.
 fn show_scale(ui: &mut Ui, width: f32) {
     let (row, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
-    let words = "Share of tries that fail";
+    let words = "Share of trials that fail";
     let small = TextStyle::Small.resolve(ui.style());
     let color = palette(ui.ctx()).muted;
     let at = row.left_center();

@@ -65,7 +65,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
                         let text = egui::RichText::new(counted(rough, "jump")).color(colors.accent);
-                        ui.small(text).hint("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
+                        ui.small(text).hint("Frames where speed or turn rate changes abruptly, or the view turns by more than 120° a second");
                     }
                 });
             });

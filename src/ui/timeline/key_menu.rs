@@ -17,14 +17,14 @@ pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests)
     for way in key_ways(editor, places, own_way) {
         if ui.radio(own_way == way, way.name()).clicked() {
             let changed = animation.with_pace(places, |(each, _)| *each = way);
-            out.edit(Edit::animation(changed, "Key: way"));
+            out.edit(Edit::animation(changed, "Key: interpolation"));
         }
     }
     ui.separator();
     for pace in Easing::ALL {
         if ui.radio(own_pace == pace, pace.name()).clicked() {
             let changed = animation.with_pace(places, |(_, each)| *each = pace);
-            out.edit(Edit::animation(changed, "Key: pace"));
+            out.edit(Edit::animation(changed, "Key: easing"));
         }
     }
     ui.separator();

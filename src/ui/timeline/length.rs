@@ -28,7 +28,7 @@ pub fn show_length(
     let mut seconds = before;
     let field = Field {
         name: "length of the flight",
-        hint: "Length of the flight; another one stretches it, and the keys of values with it",
+        hint: "Length of the flight; changing it stretches the flight and the keys of values",
         unit: " s",
         default: before,
         // Value keys far behind the flight may limit it to less than that.

@@ -148,7 +148,7 @@ impl Thumbs {
         let place = shot_place(view, size.x / size.y);
         paint(ui.painter(), texture, place);
         let response = ui.interact(place, Id::unique("shot"), Sense::click_and_drag());
-        let words = "A click looks through the shot camera";
+        let words = "Click to look through the shot camera";
         let response = response.hint(with_key(ui, words, &Command::LookThrough));
         if response.accessible_name("Shot").clicked() {
             out.commands.push(Command::LookThrough);

@@ -46,19 +46,19 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
         (icons::PLAY, "Play")
     };
     press(ui, icon, name, Command::Play);
-    press(ui, icons::FORWARD, "One frame on", Command::FrameOn);
+    press(ui, icons::FORWARD, "One frame forward", Command::FrameOn);
     press(ui, icons::NEXT, "Next key", Command::NextKey);
     press(ui, icons::LAST, "Last frame", Command::LastFrame);
     let (icon, name, next) = match timeline.repeat {
-        Repeat::Once => (icons::ONCE, "Plays once; click for loop", Repeat::Loop),
+        Repeat::Once => (icons::ONCE, "Plays once; click to loop", Repeat::Loop),
         Repeat::Loop => (
             icons::LOOP,
-            "Plays in a loop; click for to and fro",
+            "Plays in a loop; click to play back and forth",
             Repeat::PingPong,
         ),
         Repeat::PingPong => (
             icons::PING_PONG,
-            "Plays to and fro; click for once",
+            "Plays back and forth; click to play once",
             Repeat::Once,
         ),
     };
@@ -78,7 +78,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     }
     ui.separator();
     record_button(ui, editor, width >= TINY, out);
-    let words = "Set a key at the playhead from the view, in place of one that is there";
+    let words = "Set a key at the playhead from the current view, replacing one that is there";
     let hint = with_key(ui, words, &Command::AddKey);
     let add_key = if width >= TINY {
         Button::new("Add key")
@@ -109,8 +109,8 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             rates(ui, editor, (graph, true), out);
         });
         button
-            .accessible_name("More of the timeline")
-            .hint("Length, frames per second, playing speed, graph of the speed; in a narrow window the frame and the shot as well");
+            .accessible_name("More timeline settings")
+            .hint("Length, frames per second, playback speed, speed graph; in a narrow window the frame and the shot as well");
     }
     // If the view is not the shot, and nothing but the camera has keys, the picture does not change during
     // playback.
@@ -120,7 +120,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             animation.frames_per_second * timeline.speed
         );
         ui.label(RichText::new(text).monospace().weak())
-            .hint("Pictures a second on screen; a slow scene loses resolution, never time");
+            .hint("Pictures per second on screen; a slow scene loses resolution, never time");
     }
 }
 
@@ -132,7 +132,7 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let last = animation.frame_at(MAX_SECONDS) as f64;
     let field = Field {
         name: "frame",
-        hint: "Frame, from 1; the number that glint render --frame takes. Behind the last one there is room for more keys",
+        hint: "Frame, counted from 1, as in glint render --frame. There is room for more keys after the last frame",
         unit: "",
         default: 1.0,
         range: 1.0..=last,
@@ -149,7 +149,7 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let has_keys = !editor.scene().animation.keys.is_empty();
     let through = Button::selectable(editor.looks_through(), "Through shot");
-    let words = "Look through the shot camera, or at it from the view";
+    let words = "Enter or leave the shot camera";
     let hint = with_key(ui, words, &Command::LookThrough);
     if ui.add_enabled(has_keys, through).hint(hint).clicked() {
         out.commands.push(Command::LookThrough);
@@ -204,7 +204,7 @@ fn rates(
     let mut fps = animation.frames_per_second;
     let field = Field {
         name: "frames per second",
-        hint: "Frames per second; the flight stays as it is",
+        hint: "Frames per second; the flight does not change",
         unit: " fps",
         default: animation.frames_per_second,
         range: FRAME_RATES,
@@ -221,8 +221,8 @@ fn rates(
     let before = editor.timeline().speed;
     let mut speed = before;
     let field = Field {
-        name: "playing speed",
-        hint: "Playing speed; 1 is real time",
+        name: "playback speed",
+        hint: "Playback speed; 1 is real time",
         unit: "×",
         default: 1.0,
         range: 0.05..=20.0,
@@ -250,7 +250,7 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
         .suffix(" px")
         .max_decimals(2);
     let slider = ui.add(slider).accessible_name("tolerance");
-    let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
+    let hint = "How far the keys may deviate from the recording. A change makes the keys again and discards other edits of them (undo brings them back)";
     let slider = slider.hint(hint);
     let is_held = is_long && slider.dragged();
     let is_let_go = ui.data_mut(|data| {
@@ -276,26 +276,26 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     if let Some(worst) = worst.filter(|worst| worst.off.is_finite()) {
         let text = format!("· deviation {:.1} px at {:.1} s", worst.off, worst.time);
         ui.label(RichText::new(text).monospace())
-            .hint("How far the picture of the keys is off that of the recording at most, at 1024², and when");
+            .hint("Largest deviation of the keys from the recording, in pixels of a 1024² picture, and when it occurs");
     }
     if editor.timeline().is_edited {
         ui.weak("edited by hand")
-            .hint("The keys are not those that were made of the recording");
+            .hint("The keys were changed after they were made from the recording");
     }
     ui.separator();
     if paused > 0.0 {
         ui.weak(format!("{paused:.1} s of pauses"));
     }
-    let forget = ui.button("Forget the recording");
+    let forget = ui.button("Discard the recording");
     if forget
-        .hint("Keep the keys, and make the file smaller")
+        .hint("Keeps the keys and makes the file smaller")
         .clicked()
     {
         let changed = Animation {
             take: None,
             ..Animation::clone(animation)
         };
-        out.edit(Edit::animation(changed, "Forget the recording"));
+        out.edit(Edit::animation(changed, "Discard the recording"));
     }
 }
 
@@ -319,7 +319,7 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     let shown = editor.shown_time();
     // Recorded keys may lie between frames, so frames are compared.
     if animation.nearest_frame(first) == animation.nearest_frame(shown) {
-        let told = "Copies of keys go to the playhead: move it to where they shall be";
+        let told = "Keys are copied to the playhead: move it to where they should go";
         return vec![Action::Tell(told.to_owned())];
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
@@ -381,7 +381,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
         Command::Preset(preset) => {
             let keys = preset.keys(&editor.shown().camera, editor.middle(), PRESET_SECONDS);
             if keys.windows(2).all(|pair| pair[0].value == pair[1].value) {
-                let told = "Nothing moves in this flight from here: look from a side first";
+                let told = "This flight would not move from here: look from the side first";
                 return vec![Action::Tell(told.to_owned())];
             }
             let changed = Animation {
@@ -401,7 +401,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
                 ..Animation::clone(animation)
             };
             if changed == **animation {
-                let told = "This changes nothing of the flight as it is";
+                let told = "This would not change the flight";
                 return vec![Action::Tell(told.to_owned())];
             }
             // If the flight now ends before the playhead, the playhead moves to the end.

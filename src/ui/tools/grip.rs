@@ -88,9 +88,9 @@ impl Grip {
     pub fn wrong(&self) -> Option<String> {
         let is_size = matches!(self.handle, Handle::Radius | Handle::Size);
         match read_number(&self.typed) {
-            None => Some(format!("{} is no number yet", self.typed)),
+            None => Some(format!("{} is not a number yet", self.typed)),
             Some(number) if is_size && number <= 0.0 => {
-                Some(format!("{} is not above 0", self.typed))
+                Some(format!("{} is not greater than 0", self.typed))
             }
             Some(_) => None,
         }
@@ -209,7 +209,7 @@ impl Grip {
                     .iter()
                     .map(|subject| subject.turned(self.middle, by));
                 let words = format!("{} {}°", AXES[axis].1, signed(degrees));
-                Some((together(edits.collect(), "Turn"), words))
+                Some((together(edits.collect(), "Rotate"), words))
             }
         }
     }
@@ -366,8 +366,8 @@ mod tests {
             grip.wrong()
         };
         assert_eq!(wrong("2.5"), None);
-        assert_eq!(wrong("-5").as_deref(), Some("-5 is not above 0"));
-        assert_eq!(wrong("1e").as_deref(), Some("1e is no number yet"));
+        assert_eq!(wrong("-5").as_deref(), Some("-5 is not greater than 0"));
+        assert_eq!(wrong("1e").as_deref(), Some("1e is not a number yet"));
         grip.handle = Handle::Along(0);
         grip.typed = "-5".to_owned();
         assert_eq!(grip.wrong(), None);

@@ -233,7 +233,7 @@ impl Tools {
             ui.separator();
             // The current selection may be another item.
             if self.menu_waits {
-                ui.weak("Looking what is here");
+                ui.weak("Looking up what is here");
             } else {
                 for (text, command) in ITEM_COMMANDS {
                     offer(ui, view.editor, text, command, out);
@@ -242,7 +242,7 @@ impl Tools {
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, out);
             for (text, command) in [
-                ("Frame what is selected", Command::FrameSelected),
+                ("Frame selection", Command::FrameSelected),
                 ("Frame everything", Command::FrameAll),
             ] {
                 entry(ui, text, command, out);

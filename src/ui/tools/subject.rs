@@ -101,7 +101,7 @@ impl Movable {
                     Shape::Mesh(mesh) => mesh.turned_by(about, (axis, degrees)).into(),
                     shape => shape.turned(about, by),
                 };
-                self.reshaped(turned, "turn")
+                self.reshaped(turned, "rotate")
             }
             Self::Light(_, light) => {
                 self.moved(by * (light.position - about) + about - light.position)
