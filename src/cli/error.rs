@@ -42,7 +42,7 @@ impl CliError {
 
     /// Nobody asked a trace to stop, and it did.
     pub fn no_picture() -> Self {
-        Self::failed("the trace ended without a picture")
+        Self::failed("tracing ended without a picture")
     }
 
     /// Says it on stderr; the exit code for it.

@@ -115,7 +115,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let twelve = ["--frames", "1-12"];
     let said = done(&mut export(&frames, &twelve));
     assert!(
-        said.contains("12 frames written, 0 there already"),
+        said.contains("12 frames written, 0 already there"),
         "{said}"
     );
     let before = files(&frames);
@@ -132,7 +132,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let said = done(export(&frames, &twelve).arg("--dry-run"));
     assert!(said.contains("4 frames of 12 to make: 2-5"), "{said}");
     let said = done(&mut export(&frames, &twelve));
-    assert!(said.contains("4 frames written, 8 there already"), "{said}");
+    assert!(said.contains("4 frames written, 8 already there"), "{said}");
     assert!(files(&frames) == before);
     // A truncated note counts as none.
     let notes = frames.join("glint-frames.txt");
@@ -141,7 +141,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let cut = format!("{}\n{}", lines[..5].join("\n"), &lines[5][..40]);
     fs::write(&notes, cut).expect("written");
     let said = done(&mut export(&frames, &twelve));
-    assert!(said.contains("8 frames written, 4 there already"), "{said}");
+    assert!(said.contains("8 frames written, 4 already there"), "{said}");
     // A frame also depends on the render settings.
     let said = done(export(&frames, &twelve).args(["--antialias", "none"]));
     assert!(said.contains("12 frames written"), "{said}");
@@ -194,9 +194,9 @@ fn a_note_that_was_cut_off_costs_its_own_frame_only() {
     let text = fs::read_to_string(&notes).expect("readable");
     fs::write(&notes, &text[..text.len() - 9]).expect("written");
     let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
-    assert!(said.contains("2 frames written, 2 there already"), "{said}");
+    assert!(said.contains("2 frames written, 2 already there"), "{said}");
     let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
-    assert!(said.contains("0 frames written, 4 there already"), "{said}");
+    assert!(said.contains("0 frames written, 4 already there"), "{said}");
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
     );
     // The recording does not affect the pictures.
     scene.animation_mut().take = None;
-    assert!(again(&scene).contains("0 frames written, 202 there already"));
+    assert!(again(&scene).contains("0 frames written, 202 already there"));
 }
 
 #[test]
@@ -416,7 +416,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("rayTrace7.ppm") && said.contains("goes on from there"),
+        said.contains("rayTrace7.ppm") && said.contains("resumes the export"),
         "{said}"
     );
     fs::remove_dir(&obstacle).expect("removed");
@@ -1157,7 +1157,7 @@ fn frames_of_light_hold_what_eight_bits_round() {
         &light,
         &["--frames", "1-5:2", "--format", "exr"],
     ));
-    assert!(said.contains("3 there already"), "{said}");
+    assert!(said.contains("3 already there"), "{said}");
 }
 
 #[test]
