@@ -77,7 +77,7 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
             Err(error) => return Err(error),
         }
     }
-    Err(io::Error::other("there are too many backups of it already"))
+    Err(io::Error::other("there are already too many backups of it"))
 }
 
 /// A new file beside the one whose place it will take: nobody else writes to it, and where it does not come to
@@ -106,11 +106,11 @@ impl NewFile {
         if let Some(existing) = &existing {
             let refused = |why: &str| Err(io::Error::other(why));
             if !existing.is_file() {
-                return refused("there is something of that name that is not a file");
+                return refused("something with this name exists and is not a file");
             }
             // It could be replaced all the same: that asks its folder only.
             if existing.permissions().readonly() {
-                return refused("the file of that name may not be written to");
+                return refused("the file is read-only");
             }
         }
         let folder = match target.parent() {
@@ -202,7 +202,7 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     let target = behind_links(path)?;
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_dir()) {
         return Err(io::Error::other(
-            "there is something of that name that is not a folder",
+            "something with this name exists and is not a folder",
         ));
     }
     // No folder is made whose name is a dot.
@@ -372,7 +372,7 @@ fn behind_links(path: &Path) -> io::Result<PathBuf> {
         };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    Err(io::Error::other("it is a link that leads back to itself"))
+    Err(io::Error::other("it is a link that points back to itself"))
 }
 
 /// A new file that is locked. Until it is, another program may take it for one that was left, and remove it.
@@ -402,9 +402,10 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         let error = without_path(error);
         match error.kind() {
             // Of a file that may be written to, nobody would look for the reason there.
-            kind @ io::ErrorKind::PermissionDenied => {
-                io::Error::new(kind, format!("its folder may not be written to: {error}"))
-            }
+            kind @ io::ErrorKind::PermissionDenied => io::Error::new(
+                kind,
+                format!("writing to its folder is not permitted: {error}"),
+            ),
             _ => error,
         }
     })

@@ -29,9 +29,9 @@ impl MeshFile {
 pub(super) const COLORS_OF_POINTS: &str = "colours of points or faces are left out";
 
 /// The note that something is transparent, which nothing in scenes is.
-pub(super) const CLEAR: &str = "what is transparent is shown opaque";
+pub(super) const CLEAR: &str = "transparent materials are shown opaque";
 /// The note that something gives light of its own, which only lights do.
-pub(super) const GLOWING: &str = "what glows does not";
+pub(super) const GLOWING: &str = "glowing materials do not glow";
 
 /// A group or object of an OBJ file, a primitive of a glTF file; STL and PLY files are one part.
 #[derive(Clone, Debug, PartialEq)]

@@ -170,7 +170,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
-            "\"a.jpg\" ends in no known picture format",
+            "\"a.jpg\" does not end in a known picture format",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--width", "0"],
