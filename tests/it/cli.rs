@@ -190,11 +190,11 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["render", DEMO, "-o", "a.png", "--antialias", "contrast"],
-            "expected none, adaptive, grid: and a number",
+            "expected none, adaptive, grid:N with N from 1",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--antialias", "grid:0"],
-            "expected none, adaptive, grid: and a number",
+            "expected none, adaptive, grid:N with N from 1",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--triangle", "moeller"],
