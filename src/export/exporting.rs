@@ -308,7 +308,7 @@ impl Exporting {
         }
         all?;
         if self.on_the_way > 0 {
-            let fault = io::Error::other("a thread that writes stopped with a fault of its own");
+            let fault = io::Error::other("a writer thread stopped because of an internal error");
             return Err(disk(&self.sequence.folder, fault));
         }
         if self.done.so_far() == self.done.total {

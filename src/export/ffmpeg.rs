@@ -65,7 +65,7 @@ pub fn by_ffmpeg(
     } else if !status.success() {
         String::new()
     } else if !has_all {
-        "it ended before it had all frames\n".to_owned()
+        "it ended before it had received all frames\n".to_owned()
     } else if !is_written() {
         "it wrote nothing\n".to_owned()
     } else {
@@ -121,8 +121,8 @@ fn feed(
 /// Tells how to make the video once ffmpeg is installed: by a command line if one suffices.
 fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
-        Some(command) => format!("this makes the video of them:\n{command}"),
-        None => "exporting once more makes the video of them when ffmpeg is there".to_owned(),
+        Some(command) => format!("this command makes the video from them:\n{command}"),
+        None => "exporting again makes the video from them once ffmpeg is installed".to_owned(),
     }
 }
 

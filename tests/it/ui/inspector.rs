@@ -151,7 +151,7 @@ fn the_inspector_says_what_the_scene_needs() {
         .get_by_label("reflected rays, up to 1 bounce");
     harness
         .window
-        .get_by_label("because everything the camera can reach is on its side of every plane");
+        .get_by_label("because everything visible is on the camera's side of every plane");
 }
 
 #[test]
