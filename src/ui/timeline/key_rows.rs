@@ -11,7 +11,7 @@ use super::strip::{KEY, band, diamond, held, label, picked};
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hinted as _;
-use crate::ui::inspector::told_of_replaced;
+use crate::ui::inspector::replaced_keys_message;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
@@ -60,7 +60,7 @@ impl KeyDrag {
         };
         let before = self.before.places().len() + copies;
         let replaced = before.saturating_sub(now.places().len());
-        told_of_replaced(replaced).filter(|_| *now != *self.before)
+        replaced_keys_message(replaced).filter(|_| *now != *self.before)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
-use crate::ui::inspector::told_of_replaced;
+use crate::ui::inspector::replaced_keys_message;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -329,7 +329,7 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
         Action::Edit(Edit::animation(changed, "Copy keys")),
         Action::Select(new.into()),
     ];
-    let told = told_of_replaced(replaced).map(Action::Tell);
+    let told = replaced_keys_message(replaced).map(Action::Tell);
     made.into_iter().chain(told).collect()
 }
 
