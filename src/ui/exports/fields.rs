@@ -29,7 +29,7 @@ const NO_VIDEO: &str = "none";
 
 /// The settings that follow from the scene itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Own {
+struct SceneDefaults {
     /// Length of its animation.
     #[serde(default)]
     seconds: f64,
@@ -44,7 +44,7 @@ fn usual_sampling() -> Sampling {
     Sampling::ADAPTIVE
 }
 
-impl Own {
+impl SceneDefaults {
     /// The range of all frames at a frame rate, in the notation of the field.
     fn frames(&self, fps: f64) -> String {
         match Animation::frames_in(self.seconds, fps) {
@@ -72,7 +72,7 @@ pub struct Settings {
     is_free: bool,
     fps: f64,
     /// The scene's own settings when these were made.
-    own: Own,
+    own: SceneDefaults,
     #[serde(with = "crate::scene::method")]
     antialias: Sampling,
     #[serde(serialize_with = "write_video", deserialize_with = "read_video")]
@@ -113,11 +113,14 @@ impl Settings {
     pub fn of(editor: &Editor) -> Self {
         let scene = editor.scene();
         // A path below the working directory is shown relative to it.
-        let here = std::env::current_dir().unwrap_or_default();
-        let folder = editor.path().and_then(Path::parent).unwrap_or(&here);
-        let folder = folder.strip_prefix(&here).unwrap_or(folder);
+        let working_folder = std::env::current_dir().unwrap_or_default();
+        let folder = editor
+            .path()
+            .and_then(Path::parent)
+            .unwrap_or(&working_folder);
+        let folder = folder.strip_prefix(&working_folder).unwrap_or(folder);
         let stem = editor.stem();
-        let own = Own {
+        let own = SceneDefaults {
             seconds: scene.animation.duration(),
             size: (scene.render.width, scene.render.height),
             fps: scene.animation.frames_per_second,
@@ -139,7 +142,7 @@ impl Settings {
     }
 
     /// The same settings with an absolute folder.
-    pub fn at_home(self) -> Self {
+    pub fn with_absolute_folder(self) -> Self {
         let folder = absolute(&typed_path(&self.folder));
         let folder = folder.display().to_string();
         Self { folder, ..self }
@@ -247,9 +250,9 @@ impl Settings {
     }
 }
 
-/// `side * times / through`, rounded, within the limits of a picture's side.
-fn scaled(side: u32, times: u32, through: u32) -> u32 {
-    let length = f64::from(side) * f64::from(times) / f64::from(through);
+/// `side * numerator / denominator`, rounded, within the limits of a picture's side.
+fn scaled(side: u32, numerator: u32, denominator: u32) -> u32 {
+    let length = f64::from(side) * f64::from(numerator) / f64::from(denominator);
     (length.round() as u32).clamp(1, MAX_SIDE)
 }
 
@@ -280,8 +283,8 @@ pub enum SettingsError {
 pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
     ui.horizontal(|ui| {
         ui.weak("Presets");
-        let own = (scene.render.width, scene.render.height);
-        for (name, hint, format, antialias, half) in [
+        let scene_size = (scene.render.width, scene.render.height);
+        for (name, hint, format, antialias, is_half) in [
             (
                 "PPM",
                 "Like the original program: one sample, rayTrace%d.ppm",
@@ -315,8 +318,8 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
                 };
                 name.clone_into(&mut settings.name);
                 settings.antialias = antialias;
-                let size = |side: u32| if half { side.div_ceil(2) } else { side };
-                (settings.width, settings.height) = (size(own.0), size(own.1));
+                let size = |side: u32| if is_half { side.div_ceil(2) } else { side };
+                (settings.width, settings.height) = (size(scene_size.0), size(scene_size.1));
             }
         }
     });
@@ -345,10 +348,10 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
 }
 
 fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
-    let whole = absolute(&typed_path(&settings.folder));
+    let absolute_folder = absolute(&typed_path(&settings.folder));
     let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
     ui.add_sized([FIELDS - 90.0, ROW], field)
-        .hint(whole.display().to_string())
+        .hint(absolute_folder.display().to_string())
         .accessible_name("folder");
     if ui.button("Browse…").clicked() {
         out.commands.push(Command::Ask(Ask::ExportFolder));

@@ -72,8 +72,8 @@ pub fn show_state(
     video: Option<&VideoMaker>,
     pictures: &Pictures,
 ) -> bool {
-    let place = video.map_or(&state.folder, |video| &video.path);
-    ui.label(name).hint(place.display().to_string());
+    let output_path = video.map_or(&state.folder, |video| &video.path);
+    ui.label(name).hint(output_path.display().to_string());
     let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
         let has_frames = matches!(state.ended, Some(Ok(())));
@@ -84,8 +84,8 @@ pub fn show_state(
         };
         let making = video.filter(is_making);
         let is_over = state.ended.is_some() && making.is_none();
-        let buttons = if is_over { 150.0 } else { 120.0 };
-        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
+        let buttons_width = if is_over { 150.0 } else { 120.0 };
+        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons_width);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if let Some(video) = making {
             // Same layout as while the frames were made, so that a click meant for one button does not hit another.

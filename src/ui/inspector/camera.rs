@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let before = &editor.shown().camera;
     let mut camera = before.clone();
     let mut rows = FieldRows::new(ui);
-    place_rows(&mut rows, editor.orientation(), &mut camera);
+    camera_rows(&mut rows, editor.orientation(), &mut camera);
     rows.heading("Vectors");
     let defaults = Camera::default();
     rows.vector(
@@ -84,7 +84,7 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// Rows for projection, position and angles.
-pub fn place_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
+pub fn camera_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
     let kinds = [Projection::Perspective, Projection::Orthographic];
     rows.choice(
         "projection",

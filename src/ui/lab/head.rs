@@ -67,7 +67,7 @@ fn choose<T: PartialEq, const N: usize>(ui: &mut Ui, chosen: &mut T, choices: [C
 
 impl Lab {
     /// Shows the row; returns a request to the render thread, if any.
-    pub(super) fn show_head(
+    pub(super) fn show_controls(
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
@@ -84,7 +84,7 @@ impl Lab {
         if self.tab == Tab::Stability {
             return None;
         }
-        let wish = self.show_measuring(ui, editor);
+        let request = self.show_measuring(ui, editor);
         if self.is_stale(editor) {
             let stale = RichText::new("stale: measure again").color(palette(ui.ctx()).accent);
             ui.add(Label::new(stale).extend())
@@ -99,7 +99,7 @@ impl Lab {
         if let Some(obstacle) = study.and_then(|study| study.obstacle.as_ref()) {
             ui.weak("no POV-Ray").hint(obstacle);
         }
-        wish
+        request
     }
 
     /// Shows the buttons that start and stop measuring, and the progress.
@@ -117,11 +117,11 @@ impl Lab {
         let stop = ui.button("Cancel measuring").clicked();
         let study = self.study.as_ref();
         let done = study.map_or(0.0, |study| study.progress());
-        let left = study.and_then(|study| study.remaining());
-        let left = left.map_or(String::new(), |left| {
-            format!(", {:.0} s left", left.as_secs_f64().ceil())
+        let time_left = study.and_then(|study| study.remaining());
+        let time_left = time_left.map_or(String::new(), |time_left| {
+            format!(", {:.0} s left", time_left.as_secs_f64().ceil())
         });
-        ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
+        ui.label(format!("{:.0} %{time_left}", (done * 100.0).floor()));
         self.is_running = !stop;
         stop.then_some(LabRequest::Stop)
     }

@@ -12,17 +12,17 @@ use crate::worker::Background;
 /// Number of tries as a multiple of those for a quick look; computing them takes a second.
 const EFFORT: u32 = 4;
 /// Width of the list of methods.
-const LIST: f32 = 440.0;
+const LIST_WIDTH: f32 = 440.0;
 /// Width of the colour scale.
-const BAR: f32 = 160.0;
+const BAR_WIDTH: f32 = 160.0;
 /// Space for the label to its right.
-const BESIDE: f32 = 40.0;
+const LABEL_WIDTH: f32 = 40.0;
 
 /// The state of the tab.
 #[derive(Default)]
 pub struct Stability {
     maps: Vec<Map>,
-    coming: Background<Vec<Map>>,
+    pending: Background<Vec<Map>>,
     chosen: usize,
     /// Whether the background task that computes the maps has failed.
     has_failed: bool,
@@ -36,19 +36,19 @@ impl Stability {
         }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
-                ui.set_width(LIST);
+                ui.set_width(LIST_WIDTH);
                 let list = ScrollArea::vertical().auto_shrink(false);
                 list.show(ui, |ui| self.show_list(ui, scene));
             });
             ui.vertical(|ui| {
                 let map = &self.maps[self.chosen];
-                let stand = map.subject.standing(scene);
+                let position = map.subject.standing(scene);
                 ui.label(headline(map));
                 ui.weak(map.sentence());
-                let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
+                let warning = position.filter(|&position| heat::is_near_failing(map, position));
                 let is_double = scene.render.precision == Precision::Double;
                 match (warning, self.is_used(scene, map)) {
-                    _ if stand.is_none() => {
+                    _ if position.is_none() => {
                         ui.weak("Where your scene is on this map cannot be determined.");
                     }
                     (Some(_), true) if is_double && map.subject.is_of_single_precision() => {
@@ -65,26 +65,26 @@ impl Stability {
                         ui.weak("The frame marks where your scene is.");
                     }
                 }
-                let asked = map.subject.method_in_use(&scene.render);
-                if let Some(asked) = asked.filter(|asked| *asked != map.method)
+                let used = map.subject.method_in_use(&scene.render);
+                if let Some(used) = used.filter(|used| *used != map.method)
                     && self.is_used(scene, map)
                 {
-                    ui.weak(format!("This is {}; your scene uses {asked}.", map.method));
+                    ui.weak(format!("This is {}; your scene uses {used}.", map.method));
                 }
                 let size = ui.available_size() - vec2(GRID, GRID + ROW);
                 let size = size.min(vec2(720.0, 600.0));
-                heat::show(ui, map, size, stand);
+                heat::show(ui, map, size, position);
                 show_scale(ui, size.x);
             });
         });
     }
 
     fn fetch(&mut self, ui: &mut Ui) {
-        match self.coming.take() {
+        match self.pending.take() {
             Some(Ok(maps)) => self.maps = maps,
             Some(Err(_)) => self.has_failed = true,
-            None if !self.coming.is_awaited() && !self.has_failed => {
-                self.coming = Background::start("glint-stability", || maps(EFFORT));
+            None if !self.pending.is_awaited() && !self.has_failed => {
+                self.pending = Background::start("glint-stability", || maps(EFFORT));
             }
             None => {}
         }
@@ -101,16 +101,16 @@ impl Stability {
     /// Returns whether the scene uses this method. If its parameter has a value that was not tested, maps of the
     /// same method with another value count.
     fn is_used(&self, scene: &Scene, map: &Map) -> bool {
-        let Some(asked) = map.subject.method_in_use(&scene.render) else {
+        let Some(used_method) = map.subject.method_in_use(&scene.render) else {
             return map.is_default;
         };
-        let mut alike = self
+        let mut same_subject = self
             .maps
             .iter()
             .filter(|other| other.subject == map.subject);
-        let is_tried = alike.any(|other| other.method == asked);
+        let is_tested = same_subject.any(|other| other.method == used_method);
         let kind = |method: &str| method.split(':').next().map(str::to_owned);
-        asked == map.method || !is_tried && kind(&asked) == kind(&map.method)
+        used_method == map.method || !is_tested && kind(&used_method) == kind(&map.method)
     }
 
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {
@@ -141,8 +141,8 @@ fn show_scale(ui: &mut Ui, width: f32) {
     let at = row.left_center();
     ui.painter()
         .text(at, Align2::LEFT_CENTER, words, small, color);
-    let size = vec2(BAR, GRID);
-    let middle = row.right_center() - vec2(BAR / 2.0 + BESIDE, 0.0);
+    let size = vec2(BAR_WIDTH, GRID);
+    let middle = row.right_center() - vec2(BAR_WIDTH / 2.0 + LABEL_WIDTH, 0.0);
     ramp::show_bar(ui, Rect::from_center_size(middle, size));
 }
 

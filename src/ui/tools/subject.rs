@@ -160,7 +160,7 @@ impl Movable {
 }
 
 /// Combines edits into one; a single edit stays as it is.
-pub fn together(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
+pub fn combine(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
     match edits.len() {
         0 => None,
         1 => edits.pop(),
