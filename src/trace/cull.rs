@@ -8,9 +8,9 @@ use super::bundle::Shaft;
 use super::candidates::{Candidates, Omit};
 use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
-use super::thin_cull::may_slip;
+use super::thin_cull::may_pass_thin;
 use super::thin_margin::ThinMargin;
-use super::thresholds::SLIPPING;
+use super::thresholds::THIN_WIDTH;
 use super::tile::Tile;
 use super::walk::Stack;
 use crate::plan::{Plan, PointLight, RayOrigin};
@@ -50,12 +50,12 @@ pub struct LightCandidates {
 impl Candidates {
     /// Becomes the candidates of `from` that may slip between samples if pixels are `footprint` wide; empty without
     /// a footprint.
-    fn keep_slipping<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
+    fn keep_thin<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
         match footprint {
             None => self.clear(),
             Some(width) => {
-                let slipping = width * R::from_f64(SLIPPING);
-                self.keep_narrow(from, plan, |_, _| slipping);
+                let thin_width = width * R::from_f64(THIN_WIDTH);
+                self.keep_narrow(from, plan, |_, _| thin_width);
             }
         }
     }
@@ -87,7 +87,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// `candidates` becomes what rays of the beam can meet, markers included, except a plane on which all of them
     /// start.
     #[inline(always)]
-    pub fn keep_met(
+    pub fn gather_met(
         self,
         candidates: &mut Candidates,
         beam: &Beam<L::Real>,
@@ -108,7 +108,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// `between` becomes what can block a light for any point of a ball or within `footprint` of it; without a
     /// footprint, nothing thin is listed.
     #[inline(always)]
-    pub fn keep_between(
+    pub fn gather_casters(
         self,
         between: &mut LightCandidates,
         light: &PointLight<L::Real>,
@@ -128,7 +128,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let beam = Beam::to_ball(from, ball);
         let Some(beam) = beam.and_then(|beam| beam.widened(beside, L::Real::ZERO)) else {
             *casters = Candidates::all_casting(plan, light);
-            thin.keep_slipping(casters, plan, footprint);
+            thin.keep_thin(casters, plan, footprint);
             *is_umbra = false;
             return;
         };
@@ -142,7 +142,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             casters.planes_mut().extend(planes);
         }
         casters.leave_out(plan, &light.holders);
-        thin.keep_slipping(casters, plan, footprint);
+        thin.keep_thin(casters, plan, footprint);
         let mut umbra = Umbra {
             casters,
             light: from,
@@ -159,7 +159,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// between samples there if pixels are as wide as `footprint`. Does nothing unless the plan starts rays at the
     /// hits, since otherwise they may start anywhere.
     #[inline(always)]
-    pub fn enter_towards(
+    pub fn find_shadow_entry_points(
         self,
         between: &mut LightCandidates,
         light: &PointLight<L::Real>,
@@ -197,8 +197,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             .entry_points
             .narrow::<L>(self.token, geometry, &shaft, end);
         if let Some(width) = footprint.filter(|_| between.thin.has_geometry) {
-            let beside = ThinMargin::slipping(width, L::Real::ZERO);
-            between.thin.has_geometry = may_slip::<L>(self.token, geometry, &shaft, &beside);
+            let beside = ThinMargin::new(width, L::Real::ZERO);
+            between.thin.has_geometry = may_pass_thin::<L>(self.token, geometry, &shaft, &beside);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::gather::HitPrimitive;
 use super::packet::Packet;
-use super::paths::NOTHING;
+use super::paths::NO_PRIMITIVE;
 use super::samples::Traced;
 use crate::plan::{Geometry, Plan};
 use crate::primitive::{Kind, PackedTriangle};
@@ -32,14 +32,14 @@ pub fn note_faces<L: SimdFloat>(
     traced.faces.resize(traced.red.len(), 0);
     let mut numbers = [L::Real::ZERO; MAX_LANES];
     // Adjacent rays are often on the same face.
-    let (mut last, mut mark) = (NOTHING, 0);
+    let (mut last, mut mark) = (NO_PRIMITIVE, 0);
     for (index, packet) in packets.iter().enumerate() {
-        packet.near.number.store(&mut numbers);
+        packet.first_hit.number.store(&mut numbers);
         for (lane, number) in numbers[..L::WIDTH].iter().enumerate() {
             let number = number.to_f64();
             if number != last {
                 last = number;
-                let face = (number != NOTHING).then(|| face_of(plan, number as usize));
+                let face = (number != NO_PRIMITIVE).then(|| face_of(plan, number as usize));
                 mark = face.flatten().map_or(0, |face| {
                     let unlit_lights = lights_behind(plan, face, packet.rays.direction.lane(lane));
                     u64::from(unlit_lights) << (u64::BITS - u32::BITS) | mark_of(face.0.corners)

@@ -12,7 +12,7 @@ use super::intersect::{Blocked, Kernel};
 use super::mirrored::Mirrored;
 use super::mixed_materials::{ArrivingLight, MixedMaterials};
 use super::packet::{EdgeInfo, Packet};
-use super::paths::{IgnoredPrimitive, NOTHING, Paths};
+use super::paths::{IgnoredPrimitive, NO_PRIMITIVE, Paths};
 use super::shadows::light_bit;
 use super::stats::Rays;
 use super::surface::Hit;
@@ -38,7 +38,7 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// For each light, what may block it.
     pub lights: &'a [LightCandidates],
     /// The same, if there may be gaps between two shadows, and these are looked for.
-    pub gaps: Option<&'a [LightCandidates]>,
+    pub gap_lights: Option<&'a [LightCandidates]>,
 }
 
 /// What is noted of a packet, if it is wanted: its edges and its uncertainty.
@@ -53,7 +53,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
     /// How large a pixel is at the hits, if edges are noted.
     footprint: Option<Footprint<L>>,
     /// How far the hits may be off, if doubts are noted.
-    slant: Option<HitError<L>>,
+    hit_error: Option<HitError<L>>,
 }
 
 /// One of the plan's lights.
@@ -84,7 +84,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
         // What is in doubt is traced again: nothing more is needed of it.
-        let told = match &uncertainty {
+        let certain = match &uncertainty {
             Some(own) => packet.active & !own.doubt,
             None => packet.active,
         };
@@ -95,32 +95,33 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             };
             let query = ThinQuery {
                 paths: &paths,
-                active: told,
+                active: certain,
                 cone: edge.cone,
                 in_meshes: edge.cone.widening(),
                 spread: edge.cone.spread,
-                reach: packet.near.t,
+                reach: packet.first_hit.t,
                 is_to_light: false,
             };
-            edge.near = kernel.thin_distance(self.thin, &query, stack);
+            edge.thin_distance = kernel.thin_distance(self.thin, &query, stack);
         }
 
         // One turn for each primitive that was hit, for all rays that have hit it or others of its kind.
-        let nothing = kernel.splat(NOTHING);
-        let mut left = (nothing.less(packet.near.number) & told).bits();
-        while left != 0 {
-            let mut hit = kernel.refine(&packet.rays, &packet.near, left, mixed);
-            left &= !hit.here.bits();
-            let instead = self.instead(packet, &hit);
-            let Some(material) = self.material(packet, &mut hit, (instead, told), mixed) else {
+        let nothing = kernel.splat(NO_PRIMITIVE);
+        let mut remaining = (nothing.less(packet.first_hit.number) & certain).bits();
+        while remaining != 0 {
+            let mut hit = kernel.refine(&packet.rays, &packet.first_hit, remaining, mixed);
+            remaining &= !hit.lanes.bits();
+            let replacement = self.replacement(packet, &hit);
+            let Some(material) = self.material(packet, &mut hit, (replacement, certain), mixed)
+            else {
                 continue;
             };
             let mut point = self.shading_point(packet, hit, material, (&edge, &uncertainty));
             if let Some(own) = uncertainty.as_deref_mut() {
                 self.doubt_mirrors(&point, own);
-                point.hit.here = point.hit.here & !own.doubt;
+                point.hit.lanes = point.hit.lanes & !own.doubt;
             }
-            if instead.is_none() {
+            if replacement.is_none() {
                 let mut arriving = ArrivingLight {
                     matte: kernel.splat(0.0),
                     highlight: kernel.splat(0.0),
@@ -138,17 +139,18 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 if let Some(uncertainty) = &mut uncertainty {
                     uncertainty.doubt = uncertainty.doubt | arriving.doubt;
                 }
-                if let (Some(lights), Some(edge)) = (self.gaps, &mut edge)
+                if let (Some(lights), Some(edge)) = (self.gap_lights, &mut edge)
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let (seen, look) = ((&hit, &footprint), (point.material, point.view));
-                    edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, look, lit, stack);
+                    let (at, shading) = ((&hit, &footprint), (point.material, point.view));
+                    edge.shadows =
+                        edge.shadows + kernel.shadows_at(lights, at, shading, lit, stack);
                 }
                 match point.material {
                     HitMaterial::One(surface) => {
                         let color = packet.color + arriving.color(surface, kernel.plan.show);
-                        packet.color = Vec3::select(point.hit.here, color, packet.color);
+                        packet.color = Vec3::select(point.hit.lanes, color, packet.color);
                     }
                     HitMaterial::Several(mixed) => {
                         mixed.color(kernel.plan, &arriving, &mut packet.color);
@@ -158,13 +160,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if self.may_mirror
                 && let Some(mirrors) = self.mirrors(&point)
             {
-                let onwards = self.mirror(&point, mirrors);
-                mirrored = Some(onwards.joined(mirrored));
+                let reflected = self.reflect(&point, mirrors);
+                mirrored = Some(reflected.joined(mirrored));
             }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
             let dark = Vec3::splat(kernel.splat(0.0));
-            let met = nothing.less(packet.near.number);
+            let met = nothing.less(packet.first_hit.number);
             packet.color = Vec3::select(met, packet.color, dark);
         }
         if let (Some(mirrored), Some(own)) = (&mut mirrored, uncertainty) {
@@ -175,7 +177,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
     /// Returns the colour to show instead of the light of a surface; `None` if that is shown.
     #[inline(always)]
-    fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
+    fn replacement(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
         match kernel.plan.show {
             Show::Mirrors if self.is_first => Some(Vec3::splat(kernel.splat(0.0))),
@@ -191,7 +193,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 nearest,
                 per_length,
             } => {
-                let t = packet.near.t;
+                let t = packet.first_hit.t;
                 let depth = (t - t.like(nearest)) * t.like(per_length);
                 Some(Vec3::splat(kernel.splat(1.0) - depth))
             }
@@ -212,17 +214,25 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let along = normal.dot(view);
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
-        let slant = match uncertainty {
-            Some(own) => Some(HitError::new(own, (packet.near.t, along), &hit.surface)),
+        let hit_error = match uncertainty {
+            Some(own) => Some(HitError::new(
+                own,
+                (packet.first_hit.t, along),
+                &hit.surface,
+            )),
             None => None,
         };
         let footprint = match edge {
             Some(edge) => {
-                let (cone, t) = (edge.cone, packet.near.t);
+                let (cone, t) = (edge.cone, packet.first_hit.t);
                 let cosine = hit.surface.normal.dot(view);
-                let seen = (cosine, cone.width_at(t));
-                let seen = (t, cosine, self.kernel.grazing(packet.near.number, seen));
-                Some(Footprint::new(cone, seen, hit.surface.curvature))
+                let geometry = (cosine, cone.width_at(t));
+                let geometry = (
+                    t,
+                    cosine,
+                    self.kernel.grazing(packet.first_hit.number, geometry),
+                );
+                Some(Footprint::new(cone, geometry, hit.surface.curvature))
             }
             None => None,
         };
@@ -231,29 +241,29 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             material,
             view,
             footprint,
-            slant,
+            hit_error,
         }
     }
 
     /// Returns the material of the hits, and keeps those that respond to light; `None` if none does. The packet gets
-    /// the colours that they have without light, or `instead` if given.
+    /// the colours that they have without light, or `replacement` if given.
     #[inline(always)]
     fn material<'a>(
         &'a self,
         packet: &mut Packet<L>,
         hit: &mut Hit<L>,
-        (instead, told): (Option<Vec3<L>>, L::Mask),
+        (replacement, certain): (Option<Vec3<L>>, L::Mask),
         mixed: &'a mut MixedMaterials<L>,
     ) -> Option<HitMaterial<'a, L>> {
         let materials = &self.kernel.plan.materials[..];
         if TREE && hit.is_mixed {
-            hit.here = mixed.set_base(materials, instead, &mut packet.color)?;
+            hit.lanes = mixed.set_base(materials, replacement, &mut packet.color)?;
             return Some(HitMaterial::Several(mixed));
         }
         let material = &materials[hit.material as usize];
-        let color = instead.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
-        hit.here = hit.here & told;
-        packet.color = Vec3::select(hit.here, color, packet.color);
+        let color = replacement.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
+        hit.lanes = hit.lanes & certain;
+        packet.color = Vec3::select(hit.lanes, color, packet.color);
         material.surface.as_ref().map(HitMaterial::One)
     }
 
@@ -263,7 +273,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         match point.material {
             HitMaterial::One(surface) => {
                 let filter = Vec3::broadcast(self.kernel.token, surface.mirror?);
-                Some((point.hit.here, filter))
+                Some((point.hit.lanes, filter))
             }
             HitMaterial::Several(mixed) => mixed.mirror(self.kernel.plan, self.kernel.splat(0.0)),
         }
@@ -273,18 +283,22 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     #[inline(always)]
     fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
         if self.may_mirror
-            && let Some(slant) = &point.slant
+            && let Some(hit_error) = &point.hit_error
             && let Some((active, filter)) = self.mirrors(point)
         {
             let share = filter.x.max(filter.y).max(filter.z);
-            slant.mirror((active, share), own);
+            hit_error.note_reflection((active, share), own);
         }
     }
 
     /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
     /// for shaded display", CACM 23(6), 1980.
     #[inline(always)]
-    fn mirror(&self, point: &ShadingPoint<L>, (active, filter): (L::Mask, Vec3<L>)) -> Mirrored<L> {
+    fn reflect(
+        &self,
+        point: &ShadingPoint<L>,
+        (active, filter): (L::Mask, Vec3<L>),
+    ) -> Mirrored<L> {
         let normal = point.hit.surface.normal;
         let along = point.view.dot(normal);
         let direction = point.view - normal * (along + along);
@@ -320,26 +334,27 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let shrink = one / distance;
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
-        let lowest = if light.may_be_level {
-            kernel.lowest_lit(light, (l, distance), shrink)
+        let min_cosine = if light.may_be_level {
+            kernel.min_lit_cosine(light, (l, distance), shrink)
         } else {
             zero
         };
-        let lit_side = hit.here & lowest.less(cosine);
+        let lit_side = hit.lanes & min_cosine.less(cosine);
         let facing = if kernel.plan.shadows_behind {
-            hit.here
+            hit.lanes
         } else {
             lit_side
         };
-        if let Some(slant) = &point.slant {
+        if let Some(hit_error) = &point.hit_error {
             // Also if nothing was found that may block it: what is found depends on the neighbouring rays.
-            let mut doubt = facing & slant.is_lost;
+            let mut doubt = facing & hit_error.is_lost;
             if !light.may_touch {
-                let shiny = point.material.shiny(hit.here);
-                doubt =
-                    doubt | cosine.abs().at_most(lowest) | slant.grazes((cosine, shrink), shiny);
+                let shiny = point.material.shiny(hit.lanes);
+                doubt = doubt
+                    | cosine.abs().at_most(min_cosine)
+                    | hit_error.grazes((cosine, shrink), shiny);
             }
-            arriving.doubt = arriving.doubt | hit.here & doubt;
+            arriving.doubt = arriving.doubt | hit.lanes & doubt;
         }
         if !facing.any() {
             return;
@@ -352,31 +367,31 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let (paths, reach) = kernel.towards(hit, light, (l, distance));
             let looks_for_thin = self.looks_for(&candidates.thin);
-            let beside = edge.as_mut().filter(|_| looks_for_thin);
-            let mut thick = None;
-            if let Some((_, footprint)) = &beside {
-                thick = Some(footprint.slipping());
+            let thin_search = edge.as_mut().filter(|_| looks_for_thin);
+            let mut thin_width = None;
+            if let Some((_, footprint)) = &thin_search {
+                thin_width = Some(footprint.thin_width());
             }
-            if candidates.is_umbra && thick.is_none() {
+            if candidates.is_umbra && thin_width.is_none() {
                 return;
             }
-            let ways = (&paths, (reach, shrink), facing, thick);
-            let blocked = self.shadow(point, source, ways, (arriving, stack));
-            if let Some((edge, footprint)) = beside {
+            let shadow_query = (&paths, (reach, shrink), facing, thin_width);
+            let blocked = self.shadow(point, source, shadow_query, (arriving, stack));
+            if let Some((edge, footprint)) = thin_search {
                 // Within the shadow of something wide, that of something thin is not visible.
-                let open = facing & !blocked.by_thick;
+                let unshadowed = facing & !blocked.by_thick;
                 // If the light itself is not visible there, its shadow is not either.
                 let brightness = point.material.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);
                 let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
-                let dim = open & lit_side & !visible;
+                let dim = unshadowed & lit_side & !visible;
                 if dim.any() {
-                    let from = (cosine, hit.surface.normal, l - point.view);
-                    visible = visible | dim & point.material.shows(kernel.plan, light, from);
+                    let vectors = (cosine, hit.surface.normal, l - point.view);
+                    visible = visible | dim & point.material.shows(kernel.plan, light, vectors);
                 }
                 let query = ThinQuery {
                     paths: &paths,
-                    active: open & visible,
+                    active: unshadowed & visible,
                     cone: footprint.shadow(distance),
                     in_meshes: footprint.shadow_in_meshes(),
                     spread: footprint.spread(),
@@ -384,7 +399,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     is_to_light: true,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &query, stack);
-                edge.near = near.min(edge.near);
+                edge.thin_distance = near.min(edge.thin_distance);
             }
             lit = lit & !blocked.anywhere;
             if !lit.any() {
@@ -412,7 +427,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if point.material.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();
                 let near = point.material.highlight_distance(footprint, off, distance);
-                edge.near = L::select(lit, near.min(edge.near), edge.near);
+                edge.thin_distance =
+                    L::select(lit, near.min(edge.thin_distance), edge.thin_distance);
             }
         }
     }
@@ -423,7 +439,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &self,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        (paths, (reach, shrink), facing, thick): (&Paths<L>, (L, L), L::Mask, Option<L>),
+        (paths, (reach, shrink), facing, thin_width): (&Paths<L>, (L, L), L::Mask, Option<L>),
         (arriving, stack): (&mut ArrivingLight<L>, &mut Stack<L::Real>),
     ) -> Blocked<L> {
         let (kernel, light) = (self.kernel, source.light);
@@ -433,15 +449,15 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             light: Some(light),
             culled_faces: &light.culled_faces,
         };
-        let onwards = match &point.slant {
+        let blur = match &point.hit_error {
             None => Blur::splat(kernel.token, Blur::NONE),
-            Some(slant) => slant.onwards((reach, shrink)),
+            Some(hit_error) => hit_error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
-        let wanted = (reach, facing, thick);
+        let doubt = Doubt::new(blur, (point.hit_error.is_some(), !light.may_touch));
+        let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
-        if point.slant.is_some() {
+        if point.hit_error.is_some() {
             arriving.doubt = arriving.doubt | facing & blocked.doubt;
         }
         blocked

@@ -4,15 +4,15 @@
 
 use super::candidates::{Candidates, Targets};
 use super::entry_points::EntryPoints;
-use super::footprint::{RayCone, pixels};
+use super::footprint::{RayCone, distance_in_pixels};
 use super::intersect::Kernel;
 use super::paths::Paths;
 use super::scan::{Test, TreeScan, scan_lists};
 use super::thin_cull::least_pixels;
 use super::thin_margin::ThinMargin;
 use super::thresholds::{
-    CROWD, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_WHEN_CROWDED, ONE_THING,
-    SLIPPING, WIDEST_TO_LIGHTS,
+    CROWDED_OBJECTS, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_TO_LIGHTS,
+    MAX_SPREAD_WHEN_CROWDED, MERGED_SIZE, THIN_WIDTH,
 };
 use super::walk::Stack;
 use crate::plan::PackedMesh;
@@ -33,7 +33,7 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     pub in_meshes: RayCone<L>,
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
     /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`MAX_SPREAD_INTO_MESHES`]
-    /// do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look for nothing. In crowded
+    /// do not look into meshes, and rays to a light with more than [`MAX_SPREAD_TO_LIGHTS`] look for nothing. In crowded
     /// scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and other rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
@@ -43,7 +43,7 @@ pub struct ThinQuery<'a, L: SimdFloat> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Returns how many pixels away from the rays the nearest primitive is that is narrower there than [`SLIPPING`]
+    /// Returns how many pixels away from the rays the nearest primitive is that is narrower there than [`THIN_WIDTH`]
     /// pixels; infinity for none.
     #[inline(always)]
     pub fn thin_distance(
@@ -54,8 +54,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> L {
         let spread = self.plan.view.spread();
         let narrow = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
-        let widest = match (self.plan.things < CROWD, query.is_to_light) {
-            (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
+        let widest = match (self.plan.things < CROWDED_OBJECTS, query.is_to_light) {
+            (true, true) => spread * L::Real::from_f64(MAX_SPREAD_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
             (false, true) => narrow,
             (false, false) => spread * L::Real::from_f64(MAX_SPREAD_WHEN_CROWDED),
@@ -111,7 +111,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 let margin = ThinMargin {
                     narrowing: L::Real::ZERO.max(-spread),
                     least: widest(query.in_meshes.width),
-                    ..ThinMargin::slipping(widest(query.cone.width), L::Real::ZERO.max(spread))
+                    ..ThinMargin::new(widest(query.cone.width), L::Real::ZERO.max(spread))
                 };
                 let tree_scan = TreeScan {
                     margin,
@@ -194,7 +194,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let zero = to.like(L::Real::ZERO);
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
-        let thin = size.less(width * to.like_f64(SLIPPING)) & zero.less(to) & is_before;
+        let thin = size.less(width * to.like_f64(THIN_WIDTH)) & zero.less(to) & is_before;
         (thin & self.face_lanes & self.unmerged_lanes, width)
     }
 
@@ -204,7 +204,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let width = ball.width;
         // Whether a ray hits what is inside does not matter: it passes closely enough.
         let beside = beside.max(width * width.like_f64(LEAST_NOTED_DISTANCE));
-        let near = pixels(counts, beside, width);
+        let near = distance_in_pixels(counts, beside, width);
         self.best = self.best.min(near);
     }
 }
@@ -241,7 +241,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         // Rays for which the mesh is not thin enough, or which do not come close enough to its box, do not count:
         // they are only here because of other rays of the packet.
         let thickness = ball.width.like(mesh.bvh.thinnest);
-        let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
+        let is_thin = thickness.less(ball.width * ball.width.like_f64(THIN_WIDTH));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
         let is_close = entry.less(self.query.reach + ball.width);
         let counts = is_small & is_thin & is_before & is_ahead & is_close & self.unmerged_lanes;
@@ -265,8 +265,10 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
     ) -> u64 {
         let ball = self.passed(center, radius, paths);
         let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
-        let is_one = (ball.radius + ball.radius).less(width * width.like_f64(ONE_THING));
-        let is_thin = width.like(thickness).less(width * width.like_f64(SLIPPING));
+        let is_one = (ball.radius + ball.radius).less(width * width.like_f64(MERGED_SIZE));
+        let is_thin = width
+            .like(thickness)
+            .less(width * width.like_f64(THIN_WIDTH));
         let is_there = zero.less(ball.along) & ball.along.less(self.query.reach + width);
         let counts = is_one & is_thin & is_there & self.face_lanes & self.unmerged_lanes;
         self.note(&ball, counts, ball.off - ball.radius);
@@ -330,8 +332,10 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let mut counts = counts & active;
         // A curved surface surrounds the rays that start on it.
         if P::IS_CURVED {
-            counts = counts & !paths.ignored.is(number);
+            counts = counts & !paths.ignored.starts_on(number);
         }
-        self.best = self.best.min(pixels(counts, approach.distance, width));
+        self.best = self
+            .best
+            .min(distance_in_pixels(counts, approach.distance, width));
     }
 }

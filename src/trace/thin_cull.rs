@@ -3,7 +3,7 @@
 
 use super::bundle::Shaft;
 use super::thin_margin::ThinMargin;
-use super::thresholds::{CROWDED, ONE_THING, SMALL_MESH_PIXELS};
+use super::thresholds::{CROWDED_FACES_PER_PIXEL, MERGED_SIZE, SMALL_MESH_PIXELS};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
@@ -15,13 +15,13 @@ const MOST_NODES: u32 = 32;
 /// pixel, testing each is too slow.
 #[inline(always)]
 pub fn least_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
-    let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED);
+    let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED_FACES_PER_PIXEL);
     faces.sqrt().max(R::from_f64(SMALL_MESH_PIXELS))
 }
 
 /// Returns whether any ray of the shaft may pass close to something thin in the trees, at any distance.
 #[inline(never)]
-pub fn may_slip<L: SimdFloat>(
+pub fn may_pass_thin<L: SimdFloat>(
     token: L::Token,
     geometry: &Geometry<L::Real>,
     shaft: &Shaft<L::Real>,
@@ -107,7 +107,7 @@ fn is_close<L: SimdFloat>(
 #[inline(always)]
 fn is_one<R: Real>(bounds: BoundingBox<R>, width: R) -> bool {
     let (_, radius) = bounds.ball();
-    radius + radius < width * R::from_f64(ONE_THING)
+    radius + radius < width * R::from_f64(MERGED_SIZE)
 }
 
 #[cfg(test)]
@@ -152,8 +152,8 @@ mod tests {
             let start = DVec3::new(x, 0.0, 0.0) - way * 300.0 - plan.centre;
             let origins = BoundingBox::around(&[Vec3::from_dvec3(start)]).widened(4.0);
             let ways = BoundingBox::around(&[Vec3::from_dvec3(way)]).widened(0.01);
-            let margin = ThinMargin::slipping(width, 0.0);
-            may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &margin)
+            let margin = ThinMargin::new(width, 0.0);
+            may_pass_thin::<f64>((), geometry, &Shaft::of(&origins, &ways), &margin)
         };
         // The cylinder is 0.2 thick: a little less than two of the wider pixels, and more than two of the others.
         for (x, is_thin) in [(0.0, false), (100.0, true), (200.0, false)] {

@@ -1,6 +1,6 @@
 //! How far beside rays boxes are searched for thin things.
 
-use super::thresholds::SLIPPING;
+use super::thresholds::THIN_WIDTH;
 use crate::primitive::CAUTION;
 use crate::simd::{Real, SimdFloat};
 
@@ -25,11 +25,11 @@ pub struct ThinMargin<R> {
 impl<R: Real> ThinMargin<R> {
     /// Creates the margin for things that may slip between samples, where pixels are this wide.
     #[inline(always)]
-    pub fn slipping(width: R, spread: R) -> Self {
+    pub fn new(width: R, spread: R) -> Self {
         Self {
             width,
             spread,
-            thickest: R::from_f64(SLIPPING),
+            thickest: R::from_f64(THIN_WIDTH),
             narrowing: R::ZERO,
             least: width,
         }

@@ -2,7 +2,7 @@
 
 use super::bundle::Bundle;
 use super::thin_margin::ThinMargin;
-use super::thresholds::ONE_THING;
+use super::thresholds::MERGED_SIZE;
 use crate::plan::{Bvh, Child, GROUP, Node};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
@@ -164,7 +164,7 @@ pub fn walk_thin<L: SimdFloat>(
                 Child::Node(inner) => {
                     let mut merged_lanes = merged_lanes;
                     let ball = node.bounds(place as usize).ball();
-                    if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
+                    if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
                         let thickness = L::Real::from_single(node.thickness[place as usize]);
                         merged_lanes |= visitor.settle(ball, thickness);
                     }
