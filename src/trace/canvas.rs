@@ -23,7 +23,7 @@ pub trait Canvas<R> {
 #[derive(Debug)]
 pub struct Pixels<'a, P> {
     /// The part of the picture.
-    pub region: Region,
+    pub place: Region,
     /// The rows of its pixels.
     pub rows: Vec<&'a mut [P]>,
     /// Instruction set with which colours are converted to pixels.
@@ -32,13 +32,13 @@ pub struct Pixels<'a, P> {
 
 impl<P> Pixels<'_, P> {
     fn pixel(&mut self, column: usize, row: usize) -> &mut P {
-        &mut self.rows[row - self.region.rows.0][column - self.region.columns.0]
+        &mut self.rows[row - self.place.rows.0][column - self.place.columns.0]
     }
 }
 
 impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     fn fill(&mut self, tile: &Tile, stride: usize, channels: [&[R]; 3]) {
-        let [left, top] = [self.region.columns.0, self.region.rows.0];
+        let [left, top] = [self.place.columns.0, self.place.rows.0];
         self.level.run(FillRows {
             rows: &mut self.rows[tile.rows.start - top..tile.rows.end - top],
             columns: tile.columns.start - left..tile.columns.end - left,

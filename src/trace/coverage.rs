@@ -13,8 +13,8 @@ use crate::simd::Real;
 /// matter.
 const FAINT_EDGE_STEPS: u16 = 2;
 /// Distances from an edge at which a sample checks whether it is straight, in multiples of the width within which
-/// the edge is located: the first of these is used whose nearest point of the finest grid is at least [`MIN_CHECK_DISTANCE`]
-/// away.
+/// the edge is located: the first of these is used whose nearest point of the finest grid is at least
+/// [`MIN_CHECK_DISTANCE`] away.
 const CHECK_DISTANCES: [f64; 3] = [1.1, 1.6, 2.1];
 /// Least distance of that sample from the edge, in the same unit: the edge's ends are off by up to a half.
 const MIN_CHECK_DISTANCE: f64 = 0.6;

@@ -53,7 +53,7 @@ pub struct Crossing {
     /// Indices of the samples at `low` and `high`.
     pub samples: [u32; 2],
     /// Indices of the samples requested between them.
-    requested: [u32; 3],
+    inside: [u32; 3],
 }
 
 impl Crossing {
@@ -68,7 +68,7 @@ impl Crossing {
             high: cell.side,
             tolerance,
             samples: [cell.corners[corner], cell.corners[corner ^ (1 << axis)]],
-            requested: [0; 3],
+            inside: [0; 3],
         }
     }
 
@@ -116,13 +116,13 @@ impl Crossing {
             return;
         }
         let (step, mut at) = (self.step(), self.low);
-        for index in 0..self.requested.len() {
+        for index in 0..self.inside.len() {
             at += step;
             if at >= self.high {
                 break;
             }
             let [x, y] = self.point(at);
-            self.requested[index] = lattice.request(x, y);
+            self.inside[index] = lattice.request(x, y);
         }
     }
 
@@ -138,7 +138,7 @@ impl Crossing {
         }
         let (step, mut at, end) = (self.step(), self.low, self.high);
         let mut is_beyond = false;
-        for index in self.requested {
+        for index in self.inside {
             at += step;
             if at >= end {
                 break;

@@ -34,7 +34,7 @@ pub fn note_faces<L: SimdFloat>(
     // Adjacent rays are often on the same face.
     let (mut last, mut mark) = (NO_PRIMITIVE, 0);
     for (index, packet) in packets.iter().enumerate() {
-        packet.first_hit.number.store(&mut numbers);
+        packet.nearest.number.store(&mut numbers);
         for (lane, number) in numbers[..L::WIDTH].iter().enumerate() {
             let number = number.to_f64();
             if number != last {

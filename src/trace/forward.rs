@@ -137,14 +137,14 @@ impl<L: SimdFloat> Bounce<L> {
             let mut uncertainty = self.uncertainties.get_mut(index);
             let blur = uncertainty.as_ref().map_or(none, |own| own.blur);
             let doubt;
-            (packet.first_hit, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
+            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
                 uncertainty.doubt = doubt;
             }
-            let hit = packet.first_hit.t.less(infinity) & active;
-            bounds.add(hit, rays.at(packet.first_hit.t));
+            let hit = packet.nearest.t.less(infinity) & active;
+            bounds.add(hit, rays.at(packet.nearest.t));
             if TREE {
-                farthest = L::select(hit, farthest.max(packet.first_hit.t), farthest);
+                farthest = L::select(hit, farthest.max(packet.nearest.t), farthest);
             }
         }
         let Some(mut ball) = bounds.ball() else {
@@ -259,11 +259,11 @@ impl<L: SimdFloat> Bounce<L> {
     fn max_footprint_length<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
         let mut max_footprint_length = kernel.splat(0.0);
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
-            let hit = packet.first_hit.t.less(kernel.infinity()) & packet.active;
-            let width = edge.cone.width_at(packet.first_hit.t);
+            let hit = packet.nearest.t.less(kernel.infinity()) & packet.active;
+            let width = edge.cone.width_at(packet.nearest.t);
             let hits = (hit, packet.rays.direction, width);
             max_footprint_length =
-                max_footprint_length.max(kernel.max_length_on(packet.first_hit.number, hits));
+                max_footprint_length.max(kernel.max_length_on(packet.nearest.number, hits));
         }
         max_footprint_length.greatest() * L::Real::from_f64(1.0 + CAUTION)
     }

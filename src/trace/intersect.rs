@@ -318,8 +318,8 @@ struct OcclusionState<L: SimdFloat, const TREE: bool> {
     free: L::Mask,
     /// Where a hit was found, certain or not; only noted if doubt is tracked.
     possible_hit: L::Mask,
-    /// Where a certain hit was found while a thickness is given. Noting it in `possible_hit` makes plain pictures of lists
-    /// 1.06 times as slow.
+    /// Where a certain hit was found while a thickness is given. Noting it in `possible_hit` makes plain pictures of
+    /// lists 1.06 times as slow.
     certain_hit: L::Mask,
     doubt: Doubt<L, TREE>,
 }

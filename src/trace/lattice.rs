@@ -32,17 +32,12 @@ pub struct CornerSample<R> {
 
 impl<R: Real> CornerSample<R> {
     #[inline(always)]
-    fn of(traced: &Traced<R>, index: usize) -> Self {
+    fn of(traced: &Traced<R>, i: usize) -> Self {
         let [red, green, blue] = traced.channels();
         Self {
-            values: [
-                red[index],
-                green[index],
-                blue[index],
-                traced.thin_distance[index],
-            ],
-            signature: traced.signature[index],
-            shadows: traced.shadows[index],
+            values: [red[i], green[i], blue[i], traced.thin_distance[i]],
+            signature: traced.signature[i],
+            shadows: traced.shadows[i],
         }
     }
 }

@@ -66,13 +66,13 @@ impl<L: SimdFloat> MixedMaterials<L> {
         self.materials.len() > 1
     }
 
-    /// Sets `color` to the colours that the materials have without light, or to `replacement` if given. Returns which
+    /// Sets `color` to the colours that the materials have without light, or to `stand_in` if given. Returns which
     /// hits respond to light; `None` if none does.
     #[inline(never)]
     pub fn set_base(
         &mut self,
         materials: &[Material<L::Real>],
-        replacement: Option<Vec3<L>>,
+        stand_in: Option<Vec3<L>>,
         color: &mut Vec3<L>,
     ) -> Option<L::Mask> {
         L::vectorize(
@@ -83,7 +83,7 @@ impl<L: SimdFloat> MixedMaterials<L> {
                 let mut shiny = color.x.less(color.x);
                 for &(lanes, material) in &self.materials {
                     let Material { base, surface } = &materials[material as usize];
-                    let base = replacement.unwrap_or(color.like(*base));
+                    let base = stand_in.unwrap_or(color.like(*base));
                     *color = Vec3::select(lanes, base, *color);
                     let Some(surface) = surface else { continue };
                     lit = match lit {

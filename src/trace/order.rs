@@ -77,13 +77,10 @@ impl<R: Real> Order<R> {
         }
         let bounding_box = bounds_of(kernel, packets).bounding_box();
         let (zero, one) = (kernel.splat(0.0), kernel.splat(1.0));
-        for Packet {
-            rays, first_hit, ..
-        } in &*packets
-        {
+        for Packet { rays, nearest, .. } in &*packets {
             self.add(
-                (first_hit.t, first_hit.number),
-                rays.at(first_hit.t),
+                (nearest.t, nearest.number),
+                rays.at(nearest.t),
                 &bounding_box,
             );
         }
@@ -98,7 +95,7 @@ impl<R: Real> Order<R> {
             let y = self.gather(kernel.token, &samples.y, first);
             let (origin, direction) = kernel.plan.view.rays(x, y);
             packet.rays = Ray { origin, direction };
-            packet.first_hit = Nearest {
+            packet.nearest = Nearest {
                 t: self.gather(kernel.token, &self.t, first),
                 number: self.gather(kernel.token, &self.number, first),
             };
@@ -213,13 +210,13 @@ fn bounds_of<L: SimdFloat, const TREE: bool>(
     let mut bounds = Bounds::new(kernel.token);
     for Packet {
         rays,
-        first_hit,
+        nearest,
         active,
         ..
     } in packets
     {
-        let hit = first_hit.t.less(kernel.infinity()) & *active;
-        bounds.add(hit, rays.at(first_hit.t));
+        let hit = nearest.t.less(kernel.infinity()) & *active;
+        bounds.add(hit, rays.at(nearest.t));
     }
     bounds
 }
@@ -231,23 +228,23 @@ fn is_scattered<L: SimdFloat, const TREE: bool>(
     packets: &[Packet<L>],
 ) -> bool {
     let (infinity, zero) = (kernel.infinity(), kernel.splat(0.0));
-    let (mut nearest, mut farthest) = (infinity, zero);
+    let (mut closest, mut farthest) = (infinity, zero);
     let (mut sum, mut count) = (L::Real::ZERO, L::Real::ZERO);
     for Packet {
-        first_hit, active, ..
+        nearest, active, ..
     } in packets
     {
-        let hit = first_hit.t.less(infinity) & *active;
+        let hit = nearest.t.less(infinity) & *active;
         if hit.any() {
-            let near_end = L::select(hit, first_hit.t, infinity);
-            let far_end = L::select(hit, first_hit.t, zero);
+            let near_end = L::select(hit, nearest.t, infinity);
+            let far_end = L::select(hit, nearest.t, zero);
             sum = sum + (far_end.greatest() - near_end.least());
             count = count + L::Real::ONE;
-            nearest = nearest.min(near_end);
+            closest = closest.min(near_end);
             farthest = farthest.max(far_end);
         }
     }
-    let range = farthest.greatest() - nearest.least();
+    let range = farthest.greatest() - closest.least();
     range * count * L::Real::from_f64(SCATTERED_SHARE) < sum
 }
 

@@ -16,7 +16,7 @@ pub fn signatures_of<L: SimdFloat>(
 ) -> [u32; MAX_LANES] {
     let mut numbers = [L::Real::ZERO; MAX_LANES];
     let mut lit = numbers;
-    packet.first_hit.number.store(&mut numbers);
+    packet.nearest.number.store(&mut numbers);
     edge.lit.store(&mut lit);
     let mut signatures = [0; MAX_LANES];
     // Separate loops: without calls, all lanes are computed in step.

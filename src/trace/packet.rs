@@ -15,7 +15,7 @@ pub struct Packet<L: SimdFloat> {
     /// Where there is a ray.
     pub active: L::Mask,
     /// What they hit first.
-    pub first_hit: Nearest<L>,
+    pub nearest: Nearest<L>,
     /// Linear colours, 0–1.
     pub color: Vec3<L>,
 }
@@ -53,7 +53,7 @@ impl<L: SimdFloat> Packet<L> {
         Self {
             rays,
             active,
-            first_hit: Nearest {
+            nearest: Nearest {
                 t: kernel.infinity(),
                 number: kernel.splat(NO_PRIMITIVE),
             },

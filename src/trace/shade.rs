@@ -53,7 +53,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
     /// How large a pixel is at the hits, if edges are noted.
     footprint: Option<Footprint<L>>,
     /// How far the hits may be off, if doubts are noted.
-    hit_error: Option<HitError<L>>,
+    error: Option<HitError<L>>,
 }
 
 /// One of the plan's lights.
@@ -99,7 +99,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 cone: edge.cone,
                 in_meshes: edge.cone.widening(),
                 spread: edge.cone.spread,
-                reach: packet.first_hit.t,
+                reach: packet.nearest.t,
                 is_to_light: false,
             };
             edge.thin_distance = kernel.thin_distance(self.thin, &query, stack);
@@ -107,13 +107,12 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
         // One turn for each primitive that was hit, for all rays that have hit it or others of its kind.
         let nothing = kernel.splat(NO_PRIMITIVE);
-        let mut remaining = (nothing.less(packet.first_hit.number) & certain).bits();
+        let mut remaining = (nothing.less(packet.nearest.number) & certain).bits();
         while remaining != 0 {
-            let mut hit = kernel.refine(&packet.rays, &packet.first_hit, remaining, mixed);
+            let mut hit = kernel.refine(&packet.rays, &packet.nearest, remaining, mixed);
             remaining &= !hit.lanes.bits();
-            let replacement = self.replacement(packet, &hit);
-            let Some(material) = self.material(packet, &mut hit, (replacement, certain), mixed)
-            else {
+            let stand_in = self.stand_in(packet, &hit);
+            let Some(material) = self.material(packet, &mut hit, (stand_in, certain), mixed) else {
                 continue;
             };
             let mut point = self.shading_point(packet, hit, material, (&edge, &uncertainty));
@@ -121,7 +120,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 self.doubt_mirrors(&point, own);
                 point.hit.lanes = point.hit.lanes & !own.doubt;
             }
-            if replacement.is_none() {
+            if stand_in.is_none() {
                 let mut arriving = ArrivingLight {
                     matte: kernel.splat(0.0),
                     highlight: kernel.splat(0.0),
@@ -143,9 +142,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let (at, shading) = ((&hit, &footprint), (point.material, point.view));
-                    edge.shadows =
-                        edge.shadows + kernel.shadows_at(lights, at, shading, lit, stack);
+                    let (at, view) = ((&hit, &footprint), (point.material, point.view));
+                    edge.shadows = edge.shadows + kernel.shadows_at(lights, at, view, lit, stack);
                 }
                 match point.material {
                     HitMaterial::One(surface) => {
@@ -160,13 +158,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if self.may_mirror
                 && let Some(mirrors) = self.mirrors(&point)
             {
-                let reflected = self.reflect(&point, mirrors);
+                let reflected = self.mirror(&point, mirrors);
                 mirrored = Some(reflected.joined(mirrored));
             }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
             let dark = Vec3::splat(kernel.splat(0.0));
-            let met = nothing.less(packet.first_hit.number);
+            let met = nothing.less(packet.nearest.number);
             packet.color = Vec3::select(met, packet.color, dark);
         }
         if let (Some(mirrored), Some(own)) = (&mut mirrored, uncertainty) {
@@ -177,7 +175,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
     /// Returns the colour to show instead of the light of a surface; `None` if that is shown.
     #[inline(always)]
-    fn replacement(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
+    fn stand_in(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
         match kernel.plan.show {
             Show::Mirrors if self.is_first => Some(Vec3::splat(kernel.splat(0.0))),
@@ -193,7 +191,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 nearest,
                 per_length,
             } => {
-                let t = packet.first_hit.t;
+                let t = packet.nearest.t;
                 let depth = (t - t.like(nearest)) * t.like(per_length);
                 Some(Vec3::splat(kernel.splat(1.0) - depth))
             }
@@ -214,25 +212,17 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let along = normal.dot(view);
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
-        let hit_error = match uncertainty {
-            Some(own) => Some(HitError::new(
-                own,
-                (packet.first_hit.t, along),
-                &hit.surface,
-            )),
+        let error = match uncertainty {
+            Some(own) => Some(HitError::new(own, (packet.nearest.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
             Some(edge) => {
-                let (cone, t) = (edge.cone, packet.first_hit.t);
+                let (cone, t) = (edge.cone, packet.nearest.t);
                 let cosine = hit.surface.normal.dot(view);
-                let geometry = (cosine, cone.width_at(t));
-                let geometry = (
-                    t,
-                    cosine,
-                    self.kernel.grazing(packet.first_hit.number, geometry),
-                );
-                Some(Footprint::new(cone, geometry, hit.surface.curvature))
+                let at = (cosine, cone.width_at(t));
+                let at = (t, cosine, self.kernel.grazing(packet.nearest.number, at));
+                Some(Footprint::new(cone, at, hit.surface.curvature))
             }
             None => None,
         };
@@ -241,27 +231,27 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             material,
             view,
             footprint,
-            hit_error,
+            error,
         }
     }
 
     /// Returns the material of the hits, and keeps those that respond to light; `None` if none does. The packet gets
-    /// the colours that they have without light, or `replacement` if given.
+    /// the colours that they have without light, or `stand_in` if given.
     #[inline(always)]
     fn material<'a>(
         &'a self,
         packet: &mut Packet<L>,
         hit: &mut Hit<L>,
-        (replacement, certain): (Option<Vec3<L>>, L::Mask),
+        (stand_in, certain): (Option<Vec3<L>>, L::Mask),
         mixed: &'a mut MixedMaterials<L>,
     ) -> Option<HitMaterial<'a, L>> {
         let materials = &self.kernel.plan.materials[..];
         if TREE && hit.is_mixed {
-            hit.lanes = mixed.set_base(materials, replacement, &mut packet.color)?;
+            hit.lanes = mixed.set_base(materials, stand_in, &mut packet.color)?;
             return Some(HitMaterial::Several(mixed));
         }
         let material = &materials[hit.material as usize];
-        let color = replacement.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
+        let color = stand_in.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
         hit.lanes = hit.lanes & certain;
         packet.color = Vec3::select(hit.lanes, color, packet.color);
         material.surface.as_ref().map(HitMaterial::One)
@@ -283,22 +273,18 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
     #[inline(always)]
     fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
         if self.may_mirror
-            && let Some(hit_error) = &point.hit_error
+            && let Some(error) = &point.error
             && let Some((active, filter)) = self.mirrors(point)
         {
             let share = filter.x.max(filter.y).max(filter.z);
-            hit_error.note_reflection((active, share), own);
+            error.note_reflection((active, share), own);
         }
     }
 
     /// r = d - 2(d·n)n, the direction of perfect reflection; Whitted, "An improved illumination model
     /// for shaded display", CACM 23(6), 1980.
     #[inline(always)]
-    fn reflect(
-        &self,
-        point: &ShadingPoint<L>,
-        (active, filter): (L::Mask, Vec3<L>),
-    ) -> Mirrored<L> {
+    fn mirror(&self, point: &ShadingPoint<L>, (active, filter): (L::Mask, Vec3<L>)) -> Mirrored<L> {
         let normal = point.hit.surface.normal;
         let along = point.view.dot(normal);
         let direction = point.view - normal * (along + along);
@@ -334,25 +320,24 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let shrink = one / distance;
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
-        let min_cosine = if light.may_be_level {
+        let lowest = if light.may_be_level {
             kernel.min_lit_cosine(light, (l, distance), shrink)
         } else {
             zero
         };
-        let lit_side = hit.lanes & min_cosine.less(cosine);
+        let lit_side = hit.lanes & lowest.less(cosine);
         let facing = if kernel.plan.shadows_behind {
             hit.lanes
         } else {
             lit_side
         };
-        if let Some(hit_error) = &point.hit_error {
+        if let Some(error) = &point.error {
             // Also if nothing was found that may block it: what is found depends on the neighbouring rays.
-            let mut doubt = facing & hit_error.is_lost;
+            let mut doubt = facing & error.is_lost;
             if !light.may_touch {
                 let shiny = point.material.shiny(hit.lanes);
-                doubt = doubt
-                    | cosine.abs().at_most(min_cosine)
-                    | hit_error.grazes((cosine, shrink), shiny);
+                doubt =
+                    doubt | cosine.abs().at_most(lowest) | error.grazes((cosine, shrink), shiny);
             }
             arriving.doubt = arriving.doubt | hit.lanes & doubt;
         }
@@ -449,15 +434,15 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             light: Some(light),
             culled_faces: &light.culled_faces,
         };
-        let blur = match &point.hit_error {
+        let blur = match &point.error {
             None => Blur::splat(kernel.token, Blur::NONE),
-            Some(hit_error) => hit_error.blur_to_light((reach, shrink)),
+            Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(blur, (point.hit_error.is_some(), !light.may_touch));
+        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_touch));
         let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
-        if point.hit_error.is_some() {
+        if point.error.is_some() {
             arriving.doubt = arriving.doubt | facing & blocked.doubt;
         }
         blocked

@@ -239,15 +239,15 @@ impl Tracer {
         let samples = (Grid::ALL, self.sampling);
         let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
         let messages = self.edge_messages(0..self.height, self.sampling);
-        let time = |region: Region| {
-            let width = region.columns.1 - region.columns.0;
-            let height = region.rows.1 - region.rows.0;
+        let time = |place: Region| {
+            let width = place.columns.1 - place.columns.0;
+            let height = place.rows.1 - place.rows.0;
             let rows = pixels.chunks_mut(width).take(height).collect();
             let since = Instant::now();
             // Never stopped.
             let control = RenderControl::default();
             let notes = (BandMessages::all(&messages), &control);
-            let _ = self.trace_piece((plan, &candidates), (region, rows), samples, notes);
+            let _ = self.trace_piece((plan, &candidates), (place, rows), samples, notes);
             since.elapsed()
         };
         self.pieces(threads).map(time).collect()
@@ -257,14 +257,14 @@ impl Tracer {
     fn trace_piece<R: SimdReal, P: Pixel>(
         &self,
         (plan, candidates): (&Plan<R>, &Candidates),
-        (region, pixels): (Region, Vec<&mut [P]>),
+        (place, pixels): (Region, Vec<&mut [P]>),
         (grid, sampling): (Grid, Sampling),
         (messages, control): (BandMessages, &RenderControl),
     ) -> Option<Rays> {
         // Outside of the kernel, which is left alone; pieces are short compared with any pause.
         control.wait_while_paused();
         let mut canvas = Pixels {
-            region,
+            place,
             rows: pixels,
             level: self.level,
         };
@@ -274,8 +274,8 @@ impl Tracer {
             tile: self.tile,
             in_squares: self.in_squares,
             region: self.region,
-            columns: region.columns.0..region.columns.1,
-            rows: region.rows.0..region.rows.1,
+            columns: place.columns.0..place.columns.1,
+            rows: place.rows.0..place.rows.1,
             canvas: &mut canvas,
             grid,
             sampling,
@@ -316,11 +316,11 @@ impl Tracer {
             let pieces = pieces.enumerate().map(|(index, pixels)| {
                 let left = index * piece_width;
                 let columns = (left, (left + piece_width).min(self.width));
-                let region = Region { columns, rows };
+                let place = Region { columns, rows };
                 let notes = (BandMessages::all(&messages), control);
                 self.trace_piece(
                     (plan, &candidates),
-                    (region, pixels),
+                    (place, pixels),
                     (grid, sampling),
                     notes,
                 )
