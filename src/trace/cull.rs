@@ -70,14 +70,14 @@ impl Candidates {
         let (top, bottom) = (edge(tile.rows.start), edge(tile.rows.end));
         let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
         let corners = corners.map(|(x, y)| plan.view.rays(x, y));
-        let little = R::from_f64(1e-5);
+        let tolerance = R::from_f64(1e-5);
         self.planes_mut().retain(|&index| {
             let plane = &plan.primitives.planes[index as usize];
             corners.iter().any(|(origin, direction)| {
                 let height = plane.offset - plane.normal.dot(*origin);
                 let speed = plane.normal.dot(*direction);
-                let is_near = height.abs() <= little * (origin.max_abs() + plane.offset.abs());
-                is_near || speed.abs() <= little || (height > R::ZERO) == (speed > R::ZERO)
+                let is_near = height.abs() <= tolerance * (origin.max_abs() + plane.offset.abs());
+                is_near || speed.abs() <= tolerance || (height > R::ZERO) == (speed > R::ZERO)
             })
         });
     }
@@ -105,12 +105,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// `between` becomes what can block a light for any point of a ball or within `footprint` of it; without a
+    /// `candidates` becomes what can block a light for any point of a ball or within `footprint` of it; without a
     /// footprint, nothing thin is listed.
     #[inline(always)]
     pub fn gather_casters(
         self,
-        between: &mut LightCandidates,
+        candidates: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (ball, footprint): (&Ball, Option<L::Real>),
         scratch: &mut Scratch<L::Real>,
@@ -121,12 +121,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             entry_points,
             thin,
             is_umbra,
-        } = between;
+        } = candidates;
         entry_points.reset();
         let from = light.position.to_dvec3();
-        let beside = footprint.unwrap_or(L::Real::ZERO);
+        let margin = footprint.unwrap_or(L::Real::ZERO);
         let beam = Beam::to_ball(from, ball);
-        let Some(beam) = beam.and_then(|beam| beam.widened(beside, L::Real::ZERO)) else {
+        let Some(beam) = beam.and_then(|beam| beam.widened(margin, L::Real::ZERO)) else {
             *casters = Candidates::all_casting(plan, light);
             thin.keep_thin(casters, plan, footprint);
             *is_umbra = false;
@@ -143,7 +143,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         casters.leave_out(plan, &light.holders);
         thin.keep_thin(casters, plan, footprint);
-        let mut umbra = Umbra {
+        let mut umbra = UmbraSearch {
             casters,
             light: from,
             ball,
@@ -161,7 +161,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     #[inline(always)]
     pub fn find_shadow_entry_points(
         self,
-        between: &mut LightCandidates,
+        candidates: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (hits, footprint): (&BoundingBox<L::Real>, Option<L::Real>),
     ) {
@@ -170,7 +170,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             return;
         };
         let is_at_hits = matches!(plan.ray_origin, RayOrigin::AtHit);
-        if !between.casters.has_geometry || !plan.is_boxed || !is_at_hits {
+        if !candidates.casters.has_geometry || !plan.is_boxed || !is_at_hits {
             return;
         }
         let caution = L::Real::from_f64(FAR_CAUTION);
@@ -179,39 +179,40 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let shaft = if let Some(apex) = light.apex(geometry) {
             let slack = (hits.max_abs() + reach.max(apex.max_abs())) * caution;
             let ends = hits.widened(slack);
-            let ways = BoundingBox {
+            let directions = BoundingBox {
                 low: ends.low - apex,
                 high: ends.high - apex,
             };
-            Shaft::of(&BoundingBox::around(&[apex]).widened(slack), &ways)
+            Shaft::of(&BoundingBox::around(&[apex]).widened(slack), &directions)
         } else {
             let starts = hits.widened((hits.max_abs() + reach) * caution);
-            let ways = BoundingBox {
+            let directions = BoundingBox {
                 low: light.position - starts.high,
                 high: light.position - starts.low,
             };
-            Shaft::of(&starts, &ways)
+            Shaft::of(&starts, &directions)
         };
         let end = L::Real::ONE + caution;
-        between.casters.has_geometry = between
+        candidates.casters.has_geometry = candidates
             .entry_points
             .narrow::<L>(self.token, geometry, &shaft, end);
-        if let Some(width) = footprint.filter(|_| between.thin.has_geometry) {
-            let beside = ThinMargin::new(width, L::Real::ZERO);
-            between.thin.has_geometry = may_pass_thin::<L>(self.token, geometry, &shaft, &beside);
+        if let Some(width) = footprint.filter(|_| candidates.thin.has_geometry) {
+            let margin = ThinMargin::new(width, L::Real::ZERO);
+            candidates.thin.has_geometry =
+                may_pass_thin::<L>(self.token, geometry, &shaft, &margin);
         }
     }
 }
 
 /// Looks for a caster that alone hides a ball from a light.
-struct Umbra<'a> {
+struct UmbraSearch<'a> {
     casters: &'a Candidates,
     light: DVec3,
     ball: &'a Ball,
     is_found: bool,
 }
 
-impl<R: Real> Visit<R> for Umbra<'_> {
+impl<R: Real> Visit<R> for UmbraSearch<'_> {
     fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
         let mut casters = self.casters.of(kind).iter();
         self.is_found = self.is_found

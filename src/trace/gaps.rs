@@ -25,7 +25,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             if weight_of(light).is_none() || 1 < shadows {
                 break;
             }
-            shadows += candidates.casters.outlines(self.plan);
+            shadows += candidates.casters.outline_count(self.plan);
         }
         1 < shadows
     }
@@ -53,7 +53,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         break;
                     };
                     let unlit = hit.lanes & !self.is_lit(lit, index);
-                    if !unlit.any() || candidates.casters.outlines(self.plan) == 0 {
+                    if !unlit.any() || candidates.casters.outline_count(self.plan) == 0 {
                         continue;
                     }
                     let light = &self.plan.lights[index];
