@@ -90,13 +90,18 @@ impl<L: SimdFloat> Bounce<L> {
     #[inline(always)]
     pub fn take_colors(&mut self, mirrored: &Self) {
         for (packet, parent) in mirrored.packets.iter().zip(&mirrored.parents) {
-            let own = &mut self.packets[parent.packet];
+            let parent_packet = &mut self.packets[parent.packet];
             let added = parent.filter.filter(clamped(packet.color));
-            own.color = Vec3::select(packet.active, own.color + added, own.color);
+            parent_packet.color = Vec3::select(
+                packet.active,
+                parent_packet.color + added,
+                parent_packet.color,
+            );
         }
         for (index, mirrored_on) in mirrored.uncertainties.iter().enumerate() {
-            let own = &mut self.uncertainties[mirrored.parents[index].packet];
-            own.doubt = own.doubt | mirrored_on.doubt & mirrored.packets[index].active;
+            let parent_rays = &mut self.uncertainties[mirrored.parents[index].packet];
+            parent_rays.doubt =
+                parent_rays.doubt | mirrored_on.doubt & mirrored.packets[index].active;
         }
     }
 
@@ -106,18 +111,19 @@ impl<L: SimdFloat> Bounce<L> {
         for (index, edge) in mirrored.edges.iter().enumerate() {
             let active = mirrored.packets[index].active;
             let parent = mirrored.parents[index].packet;
-            let own = &mut self.edges[parent];
-            own.thin_distance = L::select(
+            let parent_edge = &mut self.edges[parent];
+            parent_edge.thin_distance = L::select(
                 active,
-                edge.thin_distance.min(own.thin_distance),
-                own.thin_distance,
+                edge.thin_distance.min(parent_edge.thin_distance),
+                parent_edge.thin_distance,
             );
-            own.mirrored_shadows = L::select(active, edge.shadows, own.mirrored_shadows);
+            parent_edge.mirrored_shadows =
+                L::select(active, edge.shadows, parent_edge.mirrored_shadows);
             let active = active.bits();
             let theirs = &mirrored.signatures[index];
-            for (lane, own) in self.signatures[parent].iter_mut().enumerate() {
+            for (lane, signature) in self.signatures[parent].iter_mut().enumerate() {
                 if active >> lane & 1 == 1 {
-                    *own = join_signatures(*own, theirs[lane]);
+                    *signature = join_signatures(*signature, theirs[lane]);
                 }
             }
         }

@@ -135,7 +135,7 @@ impl<L: SimdFloat> Bounce<L> {
             };
             let (active, stack) = (packet.active, &mut scratch.stack);
             let mut uncertainty = self.uncertainties.get_mut(index);
-            let blur = uncertainty.as_ref().map_or(none, |own| own.blur);
+            let blur = uncertainty.as_ref().map_or(none, |rays| rays.blur);
             let doubt;
             (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
@@ -302,8 +302,9 @@ impl<L: SimdFloat> Bounce<L> {
             let paths = mirrored.paths;
             next.packets
                 .push(Packet::new(kernel, paths.rays, mirrored.active));
-            let own = self.uncertainties.get(index);
-            next.uncertainties.extend(own.map(Uncertainty::of_mirrored));
+            let uncertainty = self.uncertainties.get(index);
+            next.uncertainties
+                .extend(uncertainty.map(Uncertainty::of_mirrored));
             next.parents.push(ReflectionParent {
                 packet: index,
                 ignored: paths.ignored,

@@ -21,7 +21,7 @@ impl<L: SimdFloat> Mirrored<L> {
     /// Merges these and the rays of other mirrors into one packet.
     #[inline(always)]
     #[must_use]
-    pub fn joined(self, before: Option<Self>) -> Self {
+    pub fn merged_with(self, before: Option<Self>) -> Self {
         let Some(before) = before else { return self };
         let new = self;
         let is_new = new.active;

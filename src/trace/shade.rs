@@ -85,7 +85,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut mirrored: Option<Mirrored<L>> = None;
         // What is in doubt is traced again: nothing more is needed of it.
         let certain = match &uncertainty {
-            Some(own) => packet.active & !own.doubt,
+            Some(uncertainty) => packet.active & !uncertainty.doubt,
             None => packet.active,
         };
         if let Some(edge) = edge.as_mut().filter(|_| self.looks_for(self.thin)) {
@@ -116,9 +116,9 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 continue;
             };
             let mut point = self.shading_point(packet, hit, material, (&edge, &uncertainty));
-            if let Some(own) = uncertainty.as_deref_mut() {
-                self.doubt_mirrors(&point, own);
-                point.hit.lanes = point.hit.lanes & !own.doubt;
+            if let Some(uncertainty) = uncertainty.as_deref_mut() {
+                self.doubt_mirrors(&point, uncertainty);
+                point.hit.lanes = point.hit.lanes & !uncertainty.doubt;
             }
             if stand_in.is_none() {
                 let mut arriving = ArrivingLight {
@@ -159,7 +159,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 && let Some(mirrors) = self.mirrors(&point)
             {
                 let reflected = self.mirror(&point, mirrors);
-                mirrored = Some(reflected.joined(mirrored));
+                mirrored = Some(reflected.merged_with(mirrored));
             }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
@@ -167,8 +167,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             let met = nothing.less(packet.nearest.number);
             packet.color = Vec3::select(met, packet.color, dark);
         }
-        if let (Some(mirrored), Some(own)) = (&mut mirrored, uncertainty) {
-            mirrored.active = mirrored.active & !own.doubt;
+        if let (Some(mirrored), Some(uncertainty)) = (&mut mirrored, uncertainty) {
+            mirrored.active = mirrored.active & !uncertainty.doubt;
         }
         mirrored.filter(|mirrored| mirrored.active.any())
     }
@@ -213,7 +213,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
         let error = match uncertainty {
-            Some(own) => Some(HitError::new(own, (packet.nearest.t, along), &hit.surface)),
+            Some(rays) => Some(HitError::new(rays, (packet.nearest.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
@@ -271,13 +271,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
     /// Notes the uncertainty of the rays that mirrors will reflect.
     #[inline(always)]
-    fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
+    fn doubt_mirrors(&self, point: &ShadingPoint<L>, uncertainty: &mut Uncertainty<L>) {
         if self.may_mirror
             && let Some(error) = &point.error
             && let Some((active, filter)) = self.mirrors(point)
         {
             let share = filter.x.max(filter.y).max(filter.z);
-            error.note_reflection((active, share), own);
+            error.note_reflection((active, share), uncertainty);
         }
     }
 

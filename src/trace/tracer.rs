@@ -246,8 +246,8 @@ impl Tracer {
             let since = Instant::now();
             // Never stopped.
             let control = RenderControl::default();
-            let notes = (BandMessages::all(&messages), &control);
-            let _ = self.trace_piece((plan, &candidates), (place, rows), samples, notes);
+            let context = (BandMessages::all(&messages), &control);
+            let _ = self.trace_piece((plan, &candidates), (place, rows), samples, context);
             since.elapsed()
         };
         self.pieces(threads).map(time).collect()
@@ -317,12 +317,12 @@ impl Tracer {
                 let left = index * piece_width;
                 let columns = (left, (left + piece_width).min(self.width));
                 let place = Region { columns, rows };
-                let notes = (BandMessages::all(&messages), control);
+                let context = (BandMessages::all(&messages), control);
                 self.trace_piece(
                     (plan, &candidates),
                     (place, pixels),
                     (grid, sampling),
-                    notes,
+                    context,
                 )
             });
             pieces.try_reduce(Rays::default, |a, b| Some(a + b))
@@ -378,8 +378,8 @@ impl Tracer {
                     messages,
                     only_pixels: Some(notified),
                 };
-                let notes = (messages, control);
-                rays += self.trace_piece(targets, target, (Grid::ALL, self.sampling), notes)?;
+                let context = (messages, control);
+                rays += self.trace_piece(targets, target, (Grid::ALL, self.sampling), context)?;
             }
             Some(rays)
         };
