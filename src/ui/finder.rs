@@ -371,7 +371,7 @@ fn settings(editor: &Editor) -> impl Iterator<Item = (Match, &'static str)> {
     })
 }
 
-fn things<'a>(
+fn scene_items<'a>(
     editor: &'a Editor,
     matches_query: impl Fn(&str) -> bool + 'a,
 ) -> impl Iterator<Item = Match> + 'a {
