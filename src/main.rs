@@ -8,7 +8,7 @@ use glint::cli::{CliAction, CliError, picture_instead_of_window};
 use glint::export::save_image;
 use glint::image::{Film, Image};
 use glint::scene::Document;
-use glint::ui::NoWindow;
+use glint::ui::WindowError;
 use glint::{cli, ui};
 
 fn main() -> ExitCode {
@@ -54,10 +54,10 @@ fn open_editor(
     let is_screenshot = screenshot.is_some();
     match ui::run(scene.map(Path::to_owned), screenshot, (exports, select)) {
         Ok(()) => Ok(()),
-        Err(NoWindow::Unavailable(reason)) if is_screenshot => {
+        Err(WindowError::Unavailable(reason)) if is_screenshot => {
             Err(CliError::failed(format!("no window: {reason}")))
         }
-        Err(NoWindow::Unavailable(reason)) => picture_instead_of_window(scene, &reason),
+        Err(WindowError::Unavailable(reason)) => picture_instead_of_window(scene, &reason),
         Err(error) => Err(CliError::failed(error)),
     }
 }

@@ -34,15 +34,15 @@ impl Addition {
                 let low = scene.objects_bounds().map(|(low, _)| low.y);
                 let ground = || ground_distance(scene).map(|_| 0.0);
                 // In the plane of another one it would not be seen; far above it, it would hide what stands there.
-                let over_others = size * STEP * planes(scene).count() as f64;
-                let floor = low.or_else(ground).map(|floor| floor + over_others);
+                let plane_offset = size * PLANE_STEP * visible_planes(scene).count() as f64;
+                let floor = low.or_else(ground).map(|floor| floor + plane_offset);
                 match (&shape, floor) {
                     // Existing objects end up standing on the new plane; without any, it is the ground.
                     (Shape::Plane(_), Some(floor)) => {
                         let down = DVec3::Y * (floor - shape.position().y);
                         Edit::AddObject(shape.kind(), shape.moved(down))
                     }
-                    _ => Edit::AddObject(shape.kind(), stood(scene, shape, size)),
+                    _ => Edit::AddObject(shape.kind(), stand_on_floor(scene, shape, size)),
                 }
             }
             Self::Solid(index) => {
@@ -52,9 +52,9 @@ impl Addition {
                     smooth: solid.smooth,
                     ..Mesh::of((solid.make)(size))
                 };
-                Edit::AddObject(solid.name, stood(scene, mesh.into(), size))
+                Edit::AddObject(solid.name, stand_on_floor(scene, mesh.into(), size))
             }
-            Self::Light => Edit::AddLight(above(scene, at, size)),
+            Self::Light => Edit::AddLight(light_position(scene, at, size)),
             Self::Pack => Edit::AddPack,
         }
     }
@@ -95,97 +95,103 @@ pub fn add_menu(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
 }
 
 /// Height of a new thing, as a share of the picture's height.
-const SHARE: f64 = 0.2;
+const HEIGHT_SHARE: f64 = 0.2;
 /// Distance by which a new plane is raised for each existing plane, in sizes of a new thing.
-const STEP: f64 = 0.1;
+const PLANE_STEP: f64 = 0.1;
 /// Distance between neighbouring candidate places, in sizes of a new thing.
-const APART: f64 = 1.3;
+const SPACING: f64 = 1.3;
 /// Number of faces and objects above which only one place is tried.
-const CROWDED: usize = 100_000;
+const SEARCH_LIMIT: usize = 100_000;
 /// Number of places tried in less crowded scenes: enough for all of them in most pictures.
-const TRIES: usize = 192;
+const MAX_TRIES: usize = 192;
 /// Factor on the size of a thing for which no place is free at full size, as the last resort.
-const SMALLER: f64 = 0.5;
+const REDUCED_SCALE: f64 = 0.5;
 /// Number of steps tried to each side of the middle.
-const FARTHEST_STEPS: u32 = 8;
+const MAX_STEPS: u32 = 8;
 /// Least distance of a new thing's middle from the bounding boxes of existing objects, in its sizes.
-const ROOM: f64 = 0.65;
+const CLEARANCE: f64 = 0.65;
 /// Factor by which a thing on a near floor may look larger than one at the usual distance.
-const NEARER: f64 = 1.6;
+const MAX_FLOOR_SCALE: f64 = 1.6;
 /// Greatest distance of a floor that a new thing is put on, in units of the usual distance.
-const FARTHEST_FLOOR: f64 = 2.0;
+const MAX_FLOOR_DISTANCE: f64 = 2.0;
 /// Least vertical component of a floor's unit normal: things do not stand on walls.
-const LEVEL: f64 = 0.7;
+const MIN_FLOOR_NORMAL_Y: f64 = 0.7;
 /// Greatest distance of the ground for a first floor to be put there, in world units.
-const FARTHEST_GROUND: f64 = 2_000.0;
+const MAX_GROUND_DISTANCE: f64 = 2_000.0;
 /// Objects nearer to the eye than this, in units of the usual distance, do not push a new thing nearer.
-const NEAREST: f64 = 0.1;
+const MIN_HIT_DISTANCE: f64 = 0.1;
 /// Smallest size of a new thing, in world units.
-const SMALLEST: f64 = 1e-6;
+const MIN_SIZE: f64 = 1e-6;
 
 /// Finds the place and the size of a new thing: a fifth of the picture's height, as far away as the scene is, on the
 /// floor if one is seen there, and beside existing objects; in front of them if there is no room.
 fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
     let camera = &scene.camera;
     let Some(framing) = camera.framing() else {
-        return (camera.position, SMALLEST);
+        return (camera.position, MIN_SIZE);
     };
     let usual = usual_distance(scene);
     let half = scene.render.aspect_ratio() / 2.0;
-    let is_inside = |place: f64, half: f64| place.abs() + SHARE / 2.0 <= half.max(SHARE / 2.0);
+    let is_inside =
+        |place: f64, half: f64| place.abs() + HEIGHT_SHARE / 2.0 <= half.max(HEIGHT_SHARE / 2.0);
     // Above the middle of the picture, a thing would hang in the air over the floor.
-    let has_floor = planes(scene).next().is_some();
+    let has_floor = visible_planes(scene).next().is_some();
     // First a coarse grid of places, then a finer one, then the finer one with smaller things.
-    let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, SMALLER)];
-    let places = rounds.into_iter().flat_map(|(part, share)| {
-        let step = SHARE * APART * part;
-        let down = outwards(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
+    let rounds = [(1.0, 1.0), (0.5, 1.0), (0.5, REDUCED_SCALE)];
+    let places = rounds.into_iter().flat_map(|(part, scale)| {
+        let step = HEIGHT_SHARE * SPACING * part;
+        let down =
+            alternating_steps(step).filter(move |&y| is_inside(y, 0.5) && !(has_floor && y < 0.0));
         down.flat_map(move |y| {
-            let across = outwards(step).filter(move |&x| is_inside(x, half));
-            across.map(move |x| ([x, -y], share))
+            let across = alternating_steps(step).filter(move |&x| is_inside(x, half));
+            across.map(move |x| ([x, -y], scale))
         })
     });
     // Each try costs as much as the scene has objects and faces.
-    let tries = if scene.faces() + scene.objects.len() > CROWDED {
+    let tries = if scene.faces() + scene.objects.len() > SEARCH_LIMIT {
         1
     } else {
-        TRIES
+        MAX_TRIES
     };
     let mut free = places
         .take(tries)
-        .filter_map(|(place, share)| free_place(scene, framing.ray(place), (usual, share)));
+        .filter_map(|(place, scale)| free_place(scene, framing.ray(place), (usual, scale)));
     let (at, size) = free
         .next()
-        .unwrap_or_else(|| before_what_is_seen(scene, framing.ray([0.0, 0.0]), usual));
+        .unwrap_or_else(|| place_in_front_of_hit(scene, framing.ray([0.0, 0.0]), usual));
     // Rounded where the thing is large enough: whole numbers read better in the inspector.
-    let tidy = |x: f64| if size > 10.0 { x.round() } else { x };
-    let at = DVec3::new(tidy(at.x), tidy(at.y), tidy(at.z));
-    (at, tidy(size).max(SMALLEST))
+    let round_if_large = |x: f64| if size > 10.0 { x.round() } else { x };
+    let at = DVec3::new(
+        round_if_large(at.x),
+        round_if_large(at.y),
+        round_if_large(at.z),
+    );
+    (at, round_if_large(size).max(MIN_SIZE))
 }
 
 /// Returns the place of a light that shines on `at` from above, no higher than the picture shows.
-fn above(scene: &Scene, at: DVec3, size: f64) -> DVec3 {
+fn light_position(scene: &Scene, at: DVec3, size: f64) -> DVec3 {
     let framing = scene.camera.framing();
     let is_seen = |point: &DVec3| {
         let place = framing.as_ref().and_then(|framing| framing.project(*point));
-        place.is_some_and(|[_, y]| y.abs() < 0.5 - SHARE / 4.0)
+        place.is_some_and(|[_, y]| y.abs() < 0.5 - HEIGHT_SHARE / 4.0)
     };
     let heights = [1.0, 0.75, 0.5, 0.25].map(|part| at + DVec3::Y * size * part);
     heights.into_iter().find(is_seen).unwrap_or(at)
 }
 
 /// Yields 0, 1, −1, 2, −2 and so on, times `step`, far enough for any picture.
-fn outwards(step: f64) -> impl Iterator<Item = f64> {
-    let forth_and_back = |steps: u32| [f64::from(steps), -f64::from(steps)];
-    let steps = std::iter::once(0.0).chain((1..=FARTHEST_STEPS).flat_map(forth_and_back));
+fn alternating_steps(step: f64) -> impl Iterator<Item = f64> {
+    let both_signs = |steps: u32| [f64::from(steps), -f64::from(steps)];
+    let steps = std::iter::once(0.0).chain((1..=MAX_STEPS).flat_map(both_signs));
     steps.map(move |steps| steps * step)
 }
 
 /// Stands a shape on a floor that is less than half its size below it, however flat it is. Discs, which would lie in
 /// its surface, and planes stay where they are.
-fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
-    let pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
-    for piece in pieces.filter(|piece| piece.normal.y.abs() > LEVEL) {
+fn stand_on_floor(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
+    let pieces = visible_planes(scene).filter_map(|object| object.shape.plane_piece());
+    for piece in pieces.filter(|piece| piece.normal.y.abs() > MIN_FLOOR_NORMAL_Y) {
         let up = piece.normal * piece.normal.y.signum();
         let height = |point: DVec3| up.dot(point - piece.point);
         let lowest = |points: &mut dyn Iterator<Item = DVec3>| {
@@ -206,7 +212,7 @@ fn stood(scene: &Scene, mut shape: Shape, size: f64) -> Shape {
 }
 
 /// Yields the visible planes of a scene.
-fn planes(scene: &Scene) -> impl Iterator<Item = &Object> {
+fn visible_planes(scene: &Scene) -> impl Iterator<Item = &Object> {
     let is_plane = |object: &&Object| object.visible && matches!(object.shape, Shape::Plane(_));
     scene.objects.iter().filter(is_plane)
 }
@@ -215,7 +221,7 @@ fn planes(scene: &Scene) -> impl Iterator<Item = &Object> {
 fn ground_distance(scene: &Scene) -> Option<f64> {
     let (origin, direction) = scene.camera.framing()?.ray([0.0, 0.0]);
     let distance = -origin.y / direction.y;
-    (0.0 < distance && distance < FARTHEST_GROUND).then_some(distance)
+    (0.0 < distance && distance < MAX_GROUND_DISTANCE).then_some(distance)
 }
 
 /// Returns the distance at which new things usually go: that of the scene's middle or, if the eye is within the scene,
@@ -223,81 +229,81 @@ fn ground_distance(scene: &Scene) -> Option<f64> {
 fn usual_distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {
-        let has_floor = planes(scene).next().is_some();
+        let has_floor = visible_planes(scene).next().is_some();
         let ahead = camera.framing().filter(|_| has_floor).map(|framing| {
             let (origin, direction) = framing.ray([0.0, 0.0]);
             first_met(scene, origin, direction)
         });
         return match ahead.flatten() {
-            Some((_, distance)) => distance.min(FARTHEST_GROUND),
+            Some((_, distance)) => distance.min(MAX_GROUND_DISTANCE),
             None => 100.0,
         };
     };
-    let (reach, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
-    let look = camera.look_at.normalize_or_zero();
-    let ahead = (middle - camera.position).dot(look);
-    if ahead > reach { ahead } else { reach }
+    let (radius, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
+    let view_direction = camera.look_at.normalize_or_zero();
+    let ahead = (middle - camera.position).dot(view_direction);
+    if ahead > radius { ahead } else { radius }
 }
 
 /// Returns the world size, at a distance, of a fifth of the picture's height.
 fn size_at(scene: &Scene, distance: f64) -> f64 {
     let camera = &scene.camera;
-    SHARE
+    HEIGHT_SHARE
         * match camera.projection {
             Projection::Perspective => distance / camera.projection_distance,
             Projection::Orthographic => camera.orthographic_height,
         }
 }
 
-/// Returns the place along a ray and the size there, times `share`, if nothing is in the way.
+/// Returns the place along a ray and the size there, times `scale`, if nothing is in the way.
 fn free_place(
     scene: &Scene,
     ray: (DVec3, DVec3),
-    (usual, share): (f64, f64),
+    (usual, scale): (f64, f64),
 ) -> Option<(DVec3, f64)> {
     let (origin, direction) = ray;
-    let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * share);
+    let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * scale);
     let mut is_on_floor = false;
-    if let Some((seen, distance)) = first_met(scene, origin, direction) {
-        let is_floor = matches!(scene.objects[seen].shape, Shape::Plane(_));
-        is_on_floor = is_floor && distance < usual * FARTHEST_FLOOR;
+    if let Some((hit_index, distance)) = first_met(scene, origin, direction) {
+        let is_floor = matches!(scene.objects[hit_index].shape, Shape::Plane(_));
+        is_on_floor = is_floor && distance < usual * MAX_FLOOR_DISTANCE;
         if is_on_floor {
-            size = size.min(size_at(scene, distance) * NEARER * share);
+            size = size.min(size_at(scene, distance) * MAX_FLOOR_SCALE * scale);
             at = origin + direction * distance;
         } else if distance < usual + size {
             return None;
         }
     }
-    let mut pieces = planes(scene).filter_map(|object| object.shape.plane_piece());
-    if !is_on_floor && pieces.any(|piece| piece.normal.y.abs() > LEVEL) {
+    let mut pieces = visible_planes(scene).filter_map(|object| object.shape.plane_piece());
+    if !is_on_floor && pieces.any(|piece| piece.normal.y.abs() > MIN_FLOOR_NORMAL_Y) {
         return None; // It would hang in the air over the floor.
     }
     // Move it out of planes, so that it stands on them instead of being cut by them.
-    for piece in planes(scene).filter_map(|object| object.shape.plane_piece()) {
+    for piece in visible_planes(scene).filter_map(|object| object.shape.plane_piece()) {
         let (height, eye) = (piece.height(at), piece.height(origin));
         if height.abs() < size / 2.0 {
             at += piece.normal * (size / 2.0 * eye.signum() - height);
         }
     }
     let is_in_the_way =
-        |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * ROOM;
+        |(low, high): (DVec3, DVec3)| (at.clamp(low, high) - at).length() < size * CLEARANCE;
     let visible = scene.visible_objects();
     let mut bounds = visible.filter_map(|object| object.shape.bounds());
     (!bounds.any(is_in_the_way)).then_some((at, size))
 }
 
 /// Returns the place in front of what a ray hits, however near that is, and the size there.
-fn before_what_is_seen(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
+fn place_in_front_of_hit(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
     let (origin, direction) = ray;
     // Things close to the eye fill the picture anyway.
-    let seen = match first_met(scene, origin, direction) {
-        Some((_, distance)) if distance > NEAREST * usual => distance,
+    let hit_distance = match first_met(scene, origin, direction) {
+        Some((_, distance)) if distance > MIN_HIT_DISTANCE * usual => distance,
         _ => f64::INFINITY,
     };
     // Half the size must fit between the place and the hit; in perspective the size grows with distance.
     let distance = match scene.camera.projection {
-        Projection::Perspective => usual.min(seen / (1.0 + size_at(scene, 1.0) / 2.0)),
-        Projection::Orthographic => usual.min(seen - size_at(scene, seen) / 2.0),
+        Projection::Perspective => usual.min(hit_distance / (1.0 + size_at(scene, 1.0) / 2.0)),
+        Projection::Orthographic => usual.min(hit_distance - size_at(scene, hit_distance) / 2.0),
     };
     (origin + direction * distance, size_at(scene, distance))
 }
@@ -331,7 +337,7 @@ mod tests {
     }
 
     /// Adds things by name and returns the bounding boxes of all objects.
-    fn added(scene: &mut Scene, names: &[&str]) -> Vec<(DVec3, DVec3)> {
+    fn add_by_name(scene: &mut Scene, names: &[&str]) -> Vec<(DVec3, DVec3)> {
         for name in names {
             let (addition, ..) = Addition::all()
                 .find(|(.., all)| all == name)
@@ -350,7 +356,7 @@ mod tests {
         for solid in SOLIDS {
             let mut scene = Scene::empty();
             scene.objects.clear();
-            added(&mut scene, &["Add Plane", &format!("Add {}", solid.name)]);
+            add_by_name(&mut scene, &["Add Plane", &format!("Add {}", solid.name)]);
             let pack = &scene.color_packs[&scene.objects[0].color_pack];
             assert_eq!(pack.diffuse, DVec3::new(196.0, 192.0, 186.0), "grey");
             let floor = scene.objects[0].shape.plane_piece().expect("a floor");
@@ -368,8 +374,8 @@ mod tests {
     #[test]
     fn what_is_added_to_the_demo_stands_on_its_floor_beside_what_is_there() {
         let mut scene = Scene::demo();
-        let before = added(&mut scene, &[]).len();
-        let bounds = added(&mut scene, &["Add Box", "Add Cylinder", "Add Torus"]);
+        let before = add_by_name(&mut scene, &[]).len();
+        let bounds = add_by_name(&mut scene, &["Add Box", "Add Cylinder", "Add Torus"]);
         for (index, (low, high)) in bounds.iter().enumerate().skip(before) {
             assert!(low.y.abs() < 1.0, "{index} hangs at {low}");
             for (other_low, other_high) in &bounds[..index] {
@@ -382,8 +388,8 @@ mod tests {
     #[test]
     fn a_second_floor_and_a_light_are_seen() {
         let mut scene = Scene::demo();
-        added(&mut scene, &["Add Plane", "Add Light"]);
-        let planes = planes(&scene).filter_map(|object| object.shape.plane_piece());
+        add_by_name(&mut scene, &["Add Plane", "Add Light"]);
+        let planes = visible_planes(&scene).filter_map(|object| object.shape.plane_piece());
         let heights: Vec<f64> = planes.map(|piece| piece.point.y).collect();
         assert!(
             heights.len() == 2 && (heights[1] - heights[0]).abs() > 1.0,
@@ -392,7 +398,7 @@ mod tests {
         // The demo's camera looks down at a low angle, so what stands on the floor is high in the picture.
         let mut scene = Scene::demo();
         for _ in 0..6 {
-            added(&mut scene, &["Add Light"]);
+            add_by_name(&mut scene, &["Add Light"]);
             let framing = scene.camera.framing().expect("a basis");
             let light = scene.lights.iter().last().expect("added").position;
             let [_, y] = framing.project(light).expect("before the eye");
@@ -407,7 +413,7 @@ mod tests {
             scene.objects.clear();
             let mut names = vec!["Add Sphere", "Add Sphere", "Add Box", "Add Sphere"];
             names.insert(if floor_first { 0 } else { names.len() }, "Add Plane");
-            let bounds = added(&mut scene, &names);
+            let bounds = add_by_name(&mut scene, &names);
             assert_eq!(bounds.len(), 4);
             let floor = scene
                 .objects

@@ -10,7 +10,7 @@ use crate::editor::{Action, Time};
 use crate::worker::Answer;
 
 /// Time between two checks whether something is still being dragged.
-const LOOK: Duration = Duration::from_millis(50);
+const DRAG_POLL: Duration = Duration::from_millis(50);
 
 impl App {
     /// Handles the render thread's answers. Those that change the document wait until nothing is dragged or flown: they
@@ -46,19 +46,19 @@ impl App {
             }
         }
         if !self.answers.is_empty() {
-            ctx.request_repaint_after(LOOK);
+            ctx.request_repaint_after(DRAG_POLL);
         }
     }
 
     /// Drops everything about the previous document if another one is open.
     pub(super) fn follow_document(&mut self) {
         let document = self.editor.documents();
-        if std::mem::replace(&mut self.document, document) != document {
+        if std::mem::replace(&mut self.shown_document, document) != document {
             self.why.close();
             let is_about = |answer: &Answer| matches!(answer, Answer::Quality(..));
             self.answers.retain(|answer| !is_about(answer));
-            if let Some(wish) = self.lab.forget() {
-                self.pictures.fulfil(wish);
+            if let Some(request) = self.lab.forget() {
+                self.pictures.handle_lab_request(request);
             }
         }
     }

@@ -5,7 +5,7 @@ use egui::{Context, DragAndDrop, Event, Popup, SurrenderFocusOn, Theme, Ui, View
 use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
-use super::commands::{Command, Next, goes_beside_popups, is_about_files, pressed};
+use super::commands::{Command, Next, is_about_files, pressed, works_during_popups};
 use super::examples::Examples;
 use super::exports::Exports;
 use super::file_requests::FileOutcome;
@@ -16,7 +16,7 @@ use super::histogram::Levels;
 use super::inspector::Quality;
 use super::lab::Lab;
 use super::layout::{Layout, keep_readable};
-use super::number::{DragStep, dragged, take_refused};
+use super::number::{DragStep, drag_step, take_refusal};
 use super::outliner::Outliner;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
@@ -79,13 +79,13 @@ pub struct App {
     /// Answers of the render thread that wait until nothing is dragged.
     pub(super) answers: Vec<Answer>,
     /// Number of the document that was shown last, see [`Editor::documents`].
-    pub(super) document: u64,
+    pub(super) shown_document: u64,
     /// Revision at which the user agreed to close the window.
     pub(super) closing: Option<u64>,
     /// Text copied last, and the part of the scene that it describes.
     pub(super) copied: Option<(String, Scene)>,
     /// Time at which Escape was last pressed with nothing to leave, in seconds.
-    pub(super) escaped: Option<f64>,
+    pub(super) last_idle_escape: Option<f64>,
     pub(super) title: String,
     pub(super) theme: Theme,
     pub(super) autosave: Autosave,
@@ -94,7 +94,7 @@ pub struct App {
 }
 
 /// Returns the value that the window stored under this name when it was last closed.
-fn kept<T: DeserializeOwned>(cc: &eframe::CreationContext<'_>, name: &str) -> Option<T> {
+fn load_setting<T: DeserializeOwned>(cc: &eframe::CreationContext<'_>, name: &str) -> Option<T> {
     eframe::get_value(cc.storage?, name)
 }
 
@@ -104,7 +104,7 @@ impl App {
     /// # Errors
     /// [`RenderThreadError`] when the system starts no threads.
     pub fn new(cc: &eframe::CreationContext<'_>, setup: Setup) -> Result<Self, RenderThreadError> {
-        let chosen = kept(cc, THEME_KEY);
+        let chosen = load_setting(cc, THEME_KEY);
         theme::install(&cc.egui_ctx, chosen.unwrap_or(Theme::Dark));
         cc.egui_ctx.options_mut(|options| {
             options.quit_shortcuts.clear();
@@ -112,8 +112,8 @@ impl App {
             // Commit typed text before the click that ends editing has an effect of its own.
             options.input_options.surrender_focus_on = SurrenderFocusOn::Presses;
         });
-        let recent = kept(cc, RECENT_KEY).unwrap_or_default();
-        let folders = kept(cc, FOLDERS_KEY).unwrap_or_default();
+        let recent = load_setting(cc, RECENT_KEY).unwrap_or_default();
+        let folders = load_setting(cc, FOLDERS_KEY).unwrap_or_default();
         let mut app = Self {
             editor: Editor::demo(),
             pictures: Pictures::new(&cc.egui_ctx)?,
@@ -128,7 +128,7 @@ impl App {
             thumbs: Thumbs::default(),
             toasts: Toasts::default(),
             flying: Flying::default(),
-            layout: kept(cc, LAYOUT_KEY).unwrap_or_default(),
+            layout: load_setting(cc, LAYOUT_KEY).unwrap_or_default(),
             shortcuts_open: false,
             finder: Finder::default(),
             why: Why::default(),
@@ -140,10 +140,10 @@ impl App {
             keys_are_taken: false,
             deferred: Vec::new(),
             answers: Vec::new(),
-            document: 0,
+            shown_document: 0,
             closing: None,
             copied: None,
-            escaped: None,
+            last_idle_escape: None,
             title: String::new(),
             theme: cc.egui_ctx.theme(),
             autosave: Autosave::default(),
@@ -151,7 +151,7 @@ impl App {
             start: setup.start,
         };
         let folder = setup.data_folder.clone();
-        let exports = kept(cc, EXPORTS_KEY).unwrap_or_default();
+        let exports = load_setting(cc, EXPORTS_KEY).unwrap_or_default();
         app.exports = Exports::new(folder, exports, &mut app.editor);
         app.exports.is_open = setup.exports;
         if let Some(path) = setup.scene {
@@ -195,7 +195,7 @@ impl App {
     }
 
     /// Returns the commands whose keys were pressed, as far as keys are free for them.
-    fn commanded(&mut self, ui: &Ui, keys_are_free: bool) -> Vec<Command> {
+    fn take_commands(&mut self, ui: &Ui, keys_are_free: bool) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.deferred);
         if keys_are_free {
             commands.extend(pressed(ui, self.flying.is_flying(), |_| true));
@@ -204,7 +204,7 @@ impl App {
             && !ui.input(|input| input.pointer.any_down())
         {
             // Popups such as the color picker and the list of hints stay open meanwhile.
-            commands.extend(pressed(ui, false, goes_beside_popups));
+            commands.extend(pressed(ui, false, works_during_popups));
         } else if ui.text_edit_focused() && !self.files.is_asking() {
             // The text is committed first; the command runs in the next frame.
             self.deferred = pressed(ui, false, is_about_files);
@@ -239,7 +239,7 @@ impl App {
     }
 
     /// Closes the window once nothing is being written any more. An edit in the meantime keeps it open.
-    fn close_if_meant(&mut self, ctx: &Context) {
+    fn close_if_requested(&mut self, ctx: &Context) {
         match self.closing {
             Some(revision) if revision != self.editor.revision() => self.closing = None,
             Some(_) if !self.pictures.worker().is_saving() => {
@@ -250,7 +250,7 @@ impl App {
     }
 
     /// Advances the playhead by real time during playback, and requests a repaint for the next frame.
-    fn pass_time(&mut self, ctx: &Context) {
+    fn advance_playback(&mut self, ctx: &Context) {
         if !self.editor.timeline().is_playing {
             return;
         }
@@ -260,8 +260,8 @@ impl App {
         let timeline = self.editor.timeline();
         let animation = &self.editor.scene().animation;
         let frame = 1.0 / animation.frames_per_second;
-        let left = timeline.shown_time(animation) + frame - timeline.playhead;
-        ctx.request_repaint_after_secs((left / timeline.speed).clamp(0.002, frame) as f32);
+        let remaining = timeline.shown_time(animation) + frame - timeline.playhead;
+        ctx.request_repaint_after_secs((remaining / timeline.speed).clamp(0.002, frame) as f32);
     }
 
     fn show_title(&mut self, ctx: &Context) {
@@ -283,17 +283,17 @@ impl eframe::App for App {
         let is_measuring = self.pictures.worker().is_measuring();
         self.lab
             .update(is_measuring, self.pictures.worker().take_study());
-        let mut small = self.pictures.worker().take_thumbnails();
-        self.examples.take(ctx, &mut small);
-        self.thumbs.take(ctx, small);
-        let wishes = self.examples.wishes(ctx.pixels_per_point());
-        if !wishes.is_empty() {
-            self.pictures.worker().request_thumbnails(wishes);
+        let mut thumbnails = self.pictures.worker().take_thumbnails();
+        self.examples.take(ctx, &mut thumbnails);
+        self.thumbs.take(ctx, thumbnails);
+        let jobs = self.examples.thumbnail_jobs(ctx.pixels_per_point());
+        if !jobs.is_empty() {
+            self.pictures.worker().request_thumbnails(jobs);
         }
         self.take_answers(ctx);
         self.exports.update(&mut self.editor, &self.pictures);
-        self.pass_time(ctx);
-        self.close_if_meant(ctx);
+        self.advance_playback(ctx);
+        self.close_if_requested(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.act_on(ctx, outcome);
         self.take_dropped(ctx);
@@ -330,25 +330,25 @@ impl eframe::App for App {
         let keys_are_free = !self.keys_are_taken && !was_typing;
         // A recorded flight stays as it was flown.
         let is_recording = self.editor.timeline().recorded().is_some();
-        let gives_up = !is_recording && self.flying.gives_up(ui);
+        let cancels_look = !is_recording && self.flying.cancels_look(ui);
         let mut out = UiRequests {
-            actions: gives_up
+            actions: cancels_look
                 .then_some(Action::CancelGesture)
                 .into_iter()
                 .collect(),
-            commands: self.commanded(ui, keys_are_free),
+            commands: self.take_commands(ui, keys_are_free),
             ..UiRequests::default()
         };
         let picture = self.show_panels(ui, &mut out);
         let ctx = ui.ctx().clone();
-        if let Some(words) = take_refused(&ctx) {
+        if let Some(words) = take_refusal(&ctx) {
             self.editor.notify(words);
         }
-        match dragged(&ctx) {
+        match drag_step(&ctx) {
             // A value typed before is its own undo step, even if the press that ended typing also starts this drag.
             Some(DragStep::Begins) => out.actions.insert(0, Action::BeginGesture),
-            Some(DragStep::IsGivenUp) => out.actions.push(Action::CancelGesture),
-            Some(DragStep::GoesOn) | None => {}
+            Some(DragStep::Cancelled) => out.actions.push(Action::CancelGesture),
+            Some(DragStep::Continues) | None => {}
         }
         self.exports
             .show(&ctx, &mut self.editor, &self.pictures, &mut out);
@@ -360,7 +360,7 @@ impl eframe::App for App {
             .show(&ctx, &self.editor, &self.files.recent, &mut out);
         self.why.show(&ctx, &self.editor, self.layout.aspect);
         // Still pictures cannot be flown through: moving the camera would discard them.
-        let (place, flown) = picture;
+        let (place, flight_area) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let screen = Screen::new(&self.editor.shown().camera, place.rect);
         if let Some(screen) = screen.filter(|_| !is_still) {
@@ -369,24 +369,24 @@ impl eframe::App for App {
                     screen.place(point)
                 });
         }
-        let flown = Some(&flown).filter(|_| !is_still && !self.tools.is_dragging());
+        let flight_area = Some(&flight_area).filter(|_| !is_still && !self.tools.is_dragging());
         // Space presses the focused button and must not move the camera up as well.
         let is_free = ui.memory(|memory| memory.focused().is_none());
-        let flies = keys_are_free && is_free && !self.outliner.has_keys(ui);
+        let can_fly = keys_are_free && is_free && !self.outliner.has_keys(ui);
         let speed = (&**self.editor.scene(), self.layout.fly_speed);
-        let motion = self.flying.step(ui, flown, flies, speed);
-        if self.flying.begins_to_look() {
+        let motion = self.flying.step(ui, flight_area, can_fly, speed);
+        if self.flying.begins_looking() {
             out.actions.push(Action::BeginGesture);
         }
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
         self.carry_out(&ctx, out, was_typing);
-        let going = if self.files.is_asking() {
+        let running = if self.files.is_asking() {
             self.exports.describe(&self.pictures)
         } else {
             None
         };
-        let outcome = self.files.show(ui, &mut self.editor, going.as_deref());
+        let outcome = self.files.show(ui, &mut self.editor, running.as_deref());
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
         if !self.is_gesture(&ctx) {
@@ -396,7 +396,7 @@ impl eframe::App for App {
             || Popup::is_any_open(&ctx)
             || self.files.is_asking()
             || self.finder.is_open
-            || dragged(&ctx).is_some()
+            || drag_step(&ctx).is_some()
             // A drag payload refers to its item by its index in a list, which commands may change.
             || DragAndDrop::has_any_payload(&ctx)
             || self.tools.is_dragging()
@@ -408,8 +408,8 @@ impl eframe::App for App {
         self.toasts.show(&ctx, place.rect, self.exports.place());
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
-        if let Some(wishes) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
-            self.pictures.worker().request_thumbnails(wishes);
+        if let Some(jobs) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
+            self.pictures.worker().request_thumbnails(jobs);
         }
         // Asked after the live view was submitted: a question would keep it waiting.
         self.pictures.ask(&self.editor, questions);

@@ -1,39 +1,42 @@
 //! Arithmetic expressions that are typed instead of a number.
 
 /// Longest expression that is read, in bytes.
-const LONGEST: usize = 100;
+const MAX_LENGTH: usize = 100;
 
 /// Evaluates an expression such as `2 * (1.5 + 3) / -4`, whose numbers `read` parses; `None` if it is invalid.
 pub fn calculate(text: &str, read: fn(&str) -> Option<f64>) -> Option<f64> {
-    if text.len() > LONGEST {
+    if text.len() > MAX_LENGTH {
         return None;
     }
-    let mut sum = Sum { rest: text, read };
-    let value = sum.terms()?;
-    let is_all = sum.rest.trim().is_empty();
+    let mut parser = Parser {
+        remaining: text,
+        read,
+    };
+    let value = parser.terms()?;
+    let is_all = parser.remaining.trim().is_empty();
     Some(value).filter(|value| is_all && value.is_finite())
 }
 
 /// The rest of the expression still to be read.
-struct Sum<'t> {
-    rest: &'t str,
+struct Parser<'t> {
+    remaining: &'t str,
     read: fn(&str) -> Option<f64>,
 }
 
-impl Sum<'_> {
+impl Parser<'_> {
     /// Returns whether this sign comes next, and skips it if so.
-    fn takes(&mut self, sign: char) -> bool {
-        let after = self.rest.trim_start().strip_prefix(sign);
-        self.rest = after.unwrap_or(self.rest);
+    fn accept(&mut self, sign: char) -> bool {
+        let after = self.remaining.trim_start().strip_prefix(sign);
+        self.remaining = after.unwrap_or(self.remaining);
         after.is_some()
     }
 
     fn terms(&mut self) -> Option<f64> {
         let mut value = self.factors()?;
         loop {
-            if self.takes('+') {
+            if self.accept('+') {
                 value += self.factors()?;
-            } else if self.takes('-') {
+            } else if self.accept('-') {
                 value -= self.factors()?;
             } else {
                 return Some(value);
@@ -44,9 +47,9 @@ impl Sum<'_> {
     fn factors(&mut self) -> Option<f64> {
         let mut value = self.factor()?;
         loop {
-            if self.takes('*') {
+            if self.accept('*') {
                 value *= self.factor()?;
-            } else if self.takes('/') {
+            } else if self.accept('/') {
                 value /= self.factor()?;
             } else {
                 return Some(value);
@@ -55,23 +58,23 @@ impl Sum<'_> {
     }
 
     fn factor(&mut self) -> Option<f64> {
-        if self.takes('-') {
+        if self.accept('-') {
             return self.factor().map(|value| -value);
         }
-        if self.takes('(') {
+        if self.accept('(') {
             let value = self.terms()?;
-            return self.takes(')').then_some(value);
+            return self.accept(')').then_some(value);
         }
-        let text = self.rest.trim_start();
-        let mut before = ' ';
-        let is_other = |letter: char| {
-            let is_sign = matches!(letter, '+' | '-') && matches!(before, 'e' | 'E');
-            let is_exponent = matches!(letter, 'e' | 'E') && before.is_ascii_digit();
-            before = letter;
+        let text = self.remaining.trim_start();
+        let mut previous = ' ';
+        let ends_number = |letter: char| {
+            let is_sign = matches!(letter, '+' | '-') && matches!(previous, 'e' | 'E');
+            let is_exponent = matches!(letter, 'e' | 'E') && previous.is_ascii_digit();
+            previous = letter;
             !(letter.is_ascii_digit() || matches!(letter, '.' | ',') || is_exponent || is_sign)
         };
-        let (number, rest) = text.split_at(text.find(is_other).unwrap_or(text.len()));
-        self.rest = rest;
+        let (number, remaining) = text.split_at(text.find(ends_number).unwrap_or(text.len()));
+        self.remaining = remaining;
         (self.read)(number)
     }
 }

@@ -27,14 +27,14 @@ pub struct Autosave {
     /// This program's own recovery file in it, once there is one.
     recovery: Option<Arc<Recovery>>,
     /// Revision that is on disk, and since when.
-    kept: Option<(u64, Instant)>,
+    saved: Option<(u64, Instant)>,
     /// Write in progress: yields the revision, or why it failed.
     writing: Background<Result<u64, String>>,
-    tried: Option<Instant>,
+    last_attempt: Option<Instant>,
     /// Why nothing could be kept, as last reported.
-    why: Option<String>,
+    reported_problem: Option<String>,
     /// Document for which work left by a crash was last looked for, see [`Editor::documents`].
-    looked_for: u64,
+    checked_document: u64,
 }
 
 impl Autosave {
@@ -46,12 +46,12 @@ impl Autosave {
             recovery,
             ..Self::default()
         };
-        autosave.take_up(editor);
+        autosave.recover_leftover(editor);
         autosave
     }
 
     /// Hands the editor the work that a crash left for its document, or for any if its document has no file.
-    fn take_up(&mut self, editor: &mut Editor) {
+    fn recover_leftover(&mut self, editor: &mut Editor) {
         let recovery = self.recovery.as_ref();
         let leftover = recovery.and_then(|recovery| recovery.take_leftover(editor.path()));
         if let Some(leftover) = leftover {
@@ -62,31 +62,31 @@ impl Autosave {
                 |_| "open the file again to discard them",
             );
             editor.recover(leftover);
-            self.kept = Some((editor.revision(), Instant::now()));
+            self.saved = Some((editor.revision(), Instant::now()));
             editor.notify(format!(
                 "Glint ended with unsaved changes to {name}; they are restored here. Save them, or {discard}."
             ));
         }
-        self.looked_for = editor.documents();
+        self.checked_document = editor.documents();
     }
 
     /// Time since which the unsaved work is safe, if there is any.
-    pub fn kept_since(&self) -> Option<Instant> {
-        self.kept.map(|(_, since)| since)
+    pub fn saved_since(&self) -> Option<Instant> {
+        self.saved.map(|(_, since)| since)
     }
 
     /// Keeps unsaved work on disk, every few seconds while it changes. Writing a large scene takes longer than a frame,
     /// so it happens on a separate thread.
     pub fn tick(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(recovery) = self.recovery.clone() else {
-            return self.take_place(ctx, editor);
+            return self.retry_recovery_file(ctx, editor);
         };
         // A pending write may be of the previous document, and would overwrite the recovered work.
-        if self.looked_for != editor.documents() && !self.writing.is_awaited() {
-            self.looked_for = editor.documents();
+        if self.checked_document != editor.documents() && !self.writing.is_awaited() {
+            self.checked_document = editor.documents();
             // A document that has been edited already is not replaced.
             if editor.path().is_some() && !editor.is_dirty() {
-                self.take_up(editor);
+                self.recover_leftover(editor);
             }
         }
         self.take_written(editor);
@@ -95,13 +95,13 @@ impl Autosave {
             return;
         }
         if !editor.is_dirty() {
-            if self.kept.take().is_some() {
+            if self.saved.take().is_some() {
                 recovery.clear();
             }
-            return self.tell(editor, None);
+            return self.report_problem(editor, None);
         }
         let revision = editor.revision();
-        if self.kept.is_some_and(|(kept, _)| kept == revision) {
+        if self.saved.is_some_and(|(kept, _)| kept == revision) {
             return;
         }
         if !self.may_try(ctx) {
@@ -125,57 +125,60 @@ impl Autosave {
         };
         match written.unwrap_or_else(|no_answer| Err(no_answer.to_string())) {
             Ok(revision) => {
-                self.kept = Some((revision, Instant::now()));
-                self.tell(editor, None);
+                self.saved = Some((revision, Instant::now()));
+                self.report_problem(editor, None);
             }
-            Err(error) => self.tell(editor, Some(error)),
+            Err(error) => self.report_problem(editor, Some(error)),
         }
     }
 
     /// Tries once more to create the recovery file if that failed when the program began.
-    fn take_place(&mut self, ctx: &Context, editor: &mut Editor) {
+    fn retry_recovery_file(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(folder) = self.folder.clone() else {
             return;
         };
         if !editor.is_dirty() {
-            return self.tell(editor, None);
+            return self.report_problem(editor, None);
         }
         if !self.may_try(ctx) {
             return;
         }
         match Recovery::new(&folder) {
             Ok(place) => {
-                (self.recovery, self.tried) = (Some(Arc::new(place)), None);
-                self.tell(editor, None);
+                (self.recovery, self.last_attempt) = (Some(Arc::new(place)), None);
+                self.report_problem(editor, None);
                 ctx.request_repaint();
             }
-            Err(error) => self.tell(editor, Some(error.to_string())),
+            Err(error) => self.report_problem(editor, Some(error.to_string())),
         }
     }
 
     /// Returns whether the last attempt is long enough ago for another one, which counts from now on.
     fn may_try(&mut self, ctx: &Context) -> bool {
-        if let Some(wait) = self.tried.and_then(|at| INTERVAL.checked_sub(at.elapsed())) {
+        if let Some(wait) = self
+            .last_attempt
+            .and_then(|at| INTERVAL.checked_sub(at.elapsed()))
+        {
             ctx.request_repaint_after(wait);
             return false;
         }
-        self.tried = Some(Instant::now());
+        self.last_attempt = Some(Instant::now());
         true
     }
 
     /// Reports why work cannot be kept, once for each reason, and clears the report once it can.
-    fn tell(&mut self, editor: &mut Editor, why: Option<String>) {
-        if self.why == why {
+    fn report_problem(&mut self, editor: &mut Editor, problem: Option<String>) {
+        if self.reported_problem == problem {
             return;
         }
         editor.begin(AUTOSAVE);
-        if let Some(why) = &why {
+        if let Some(problem) = &problem {
             editor.report_error_in(
                 AUTOSAVE,
-                format!("Unsaved changes cannot be autosaved: {why}. Save your work."),
+                format!("Unsaved changes cannot be autosaved: {problem}. Save your work."),
             );
         }
-        self.why = why;
+        self.reported_problem = problem;
     }
 
     /// Removes the recovery file: the program ends normally, so there is nothing to recover.
@@ -211,11 +214,11 @@ mod tests {
         assert!(editor.take_error(AUTOSAVE).is_some());
         editor.apply(Action::Undo);
         autosave.tick(&ctx, &mut editor);
-        assert_eq!(autosave.why, None);
+        assert_eq!(autosave.reported_problem, None);
         editor.apply(Action::Redo);
         std::fs::remove_file(&place).expect("removed");
-        autosave.tried = None;
+        autosave.last_attempt = None;
         autosave.tick(&ctx, &mut editor);
-        assert!(autosave.recovery.is_some() && autosave.why.is_none());
+        assert!(autosave.recovery.is_some() && autosave.reported_problem.is_none());
     }
 }

@@ -154,7 +154,7 @@ pub enum Zoom {
     /// A tenth smaller.
     Out,
     /// The desktop's size.
-    Usual,
+    Default,
 }
 
 /// What follows once unsaved changes are saved or discarded.
@@ -259,7 +259,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     PictureAlone [plain(Key::F11)] "Hide or show everything but the picture",
     Zoom(Zoom::In) [ctrl(Key::Plus)] "Larger text and buttons",
     Zoom(Zoom::Out) [ctrl(Key::Minus)] "Smaller text and buttons",
-    Zoom(Zoom::Usual) [ctrl(Key::Num0)] "Default size of text and buttons",
+    Zoom(Zoom::Default) [ctrl(Key::Num0)] "Default size of text and buttons",
     Find [ctrl(Key::K)] "Find a command or object by name",
     Shortcuts [plain(Key::F1)] "Show these shortcuts",
 };
@@ -301,14 +301,14 @@ pub fn all() -> impl Iterator<Item = (&'static Command, &'static str, Option<Key
 }
 
 /// Returns the description of a command.
-pub fn what_of(command: &Command) -> Option<&'static str> {
+pub fn description_of(command: &Command) -> Option<&'static str> {
     all().find_map(|(other, what, _)| (other == command).then_some(what))
 }
 
 /// Takes the keys of commands out of this frame's events and returns the commands. A key that repeats because it is
 /// held counts only for undo and redo. While keys fly the camera, those with Ctrl do not count. Keys of commands that
-/// `is_heard` rejects stay in the events.
-pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) -> Vec<Command> {
+/// `accepts` rejects stay in the events.
+pub fn pressed(ui: &Ui, is_flying: bool, accepts: impl Fn(&Command) -> bool) -> Vec<Command> {
     let mut pressed = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| {
@@ -319,7 +319,7 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
                 Event::Paste(text) => Some(Command::Paste(text.clone())),
                 _ => None,
             };
-            let from_desktop = from_desktop.filter(|command| is_heard(command) && !is_flying);
+            let from_desktop = from_desktop.filter(|command| accepts(command) && !is_flying);
             if let Some(command) = from_desktop {
                 // The event stays, because selected text of a message can be copied too.
                 let is_copy = command == Command::Copy;
@@ -336,7 +336,7 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
             else {
                 return true;
             };
-            let is_meant = |keys: &KeyboardShortcut| {
+            let is_match = |keys: &KeyboardShortcut| {
                 keys.logical_key == *key
                     && modifiers.matches_logically(keys.modifiers)
                     && modifiers.alt == keys.modifiers.alt
@@ -344,8 +344,8 @@ pub fn pressed(ui: &Ui, is_flying: bool, is_heard: impl Fn(&Command) -> bool) ->
             };
             let Some(shortcut) = SHORTCUTS
                 .iter()
-                .find(|shortcut| shortcut.keys.iter().any(is_meant))
-                .filter(|shortcut| is_heard(&shortcut.command))
+                .find(|shortcut| shortcut.keys.iter().any(is_match))
+                .filter(|shortcut| accepts(&shortcut.command))
             else {
                 return true;
             };
@@ -364,21 +364,21 @@ pub fn take_escape(ui: &Ui) -> bool {
 }
 
 /// Returns the first key of a command, as menus show it.
-pub fn key_of(ui: &Ui, command: &Command) -> Option<String> {
+pub fn first_key(ui: &Ui, command: &Command) -> Option<String> {
     let shortcut = SHORTCUTS
         .iter()
         .find(|shortcut| shortcut.command == *command)?;
-    Some(name_of(ui, shortcut.keys[0]))
+    Some(key_name(ui, shortcut.keys[0]))
 }
 
 /// Returns the text of a button for a command, with its key.
 pub fn with_key(ui: &Ui, words: &str, command: &Command) -> String {
-    let key = key_of(ui, command);
+    let key = first_key(ui, command);
     key.map_or_else(|| words.to_owned(), |key| format!("{words} ({key})"))
 }
 
 /// Whether the command is heard while a popup is open, which then stays open.
-pub fn goes_beside_popups(command: &Command) -> bool {
+pub fn works_during_popups(command: &Command) -> bool {
     matches!(command, Command::Undo | Command::Redo | Command::Save)
 }
 
@@ -389,7 +389,7 @@ pub fn is_about_files(command: &Command) -> bool {
 }
 
 /// Returns the name of a key with its modifiers, as it is printed on the key.
-pub fn name_of(ui: &Ui, keys: KeyboardShortcut) -> String {
+pub fn key_name(ui: &Ui, keys: KeyboardShortcut) -> String {
     let name = ui.format_shortcut(&keys);
     let printed = [
         ("OpenBracket", "["),

@@ -60,26 +60,28 @@ impl Ask {
         if !self.writes() && path.is_file() {
             return path;
         }
-        let own = self.endings()[0];
-        let doubled = format!(".{own}.{own}");
+        let own_ending = self.endings()[0];
+        let doubled = format!(".{own_ending}.{own_ending}");
         let name = path.to_string_lossy();
         if name.ends_with(&doubled) && !path.exists() {
             // The name was typed in front of an ending that was there already.
             return path.with_extension("");
         }
         match path.extension() {
-            Some(ending) if ending.is_empty() => path.with_extension(own),
-            Some(ending) if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own) => {
-                path.as_mut_os_string().push(format!(".{own}"));
+            Some(ending) if ending.is_empty() => path.with_extension(own_ending),
+            Some(ending)
+                if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own_ending) =>
+            {
+                path.as_mut_os_string().push(format!(".{own_ending}"));
                 path
             }
             Some(_) => path,
-            None => path.with_extension(own),
+            None => path.with_extension(own_ending),
         }
     }
 
     /// Whether a file of this name will do: the ending of a picture or a camera path decides its format.
-    pub fn takes(&self, path: &Path) -> bool {
+    pub fn accepts(&self, path: &Path) -> bool {
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
         !matches!(self, Self::SaveImage | Self::ExportPath)
             || self.endings().iter().any(|known| ending == *known)
@@ -107,9 +109,9 @@ pub trait Dialogs {
 
 /// The desktop's dialogs.
 #[derive(Debug)]
-pub struct Native;
+pub struct NativeDialogs;
 
-impl Dialogs for Native {
+impl Dialogs for NativeDialogs {
     fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Background<Option<PathBuf>> {
         let (ask, wake) = (ask.clone(), ctx.clone());
         Background::start("glint-dialog", move || {

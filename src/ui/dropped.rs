@@ -39,14 +39,14 @@ impl Dropped {
 
     /// Returns the number of scenes and tables among the files that are not used. Other files are read along with the
     /// used ones or concern other programs.
-    pub fn left_of(&self, files: &[PathBuf]) -> usize {
+    pub fn unused_count(&self, files: &[PathBuf]) -> usize {
         let is_wanted = |file: &&PathBuf| has_ending(file, "ron") || has_ending(file, "csv");
         let wanted = files.iter().filter(is_wanted).count();
-        let taken = match self {
+        let used = match self {
             Self::Scene(scene) => is_wanted(&scene),
             Self::Parts { path, .. } => path.is_some(),
         };
-        wanted - usize::from(taken)
+        wanted - usize::from(used)
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(dropped(&["a.txt", "b.txt"]), scene("a.txt"));
         let left = |names: &[&str]| {
             let files: Vec<_> = names.iter().map(PathBuf::from).collect();
-            Dropped::of(&files).map(|dropped| dropped.left_of(&files))
+            Dropped::of(&files).map(|dropped| dropped.unused_count(&files))
         };
         assert_eq!(left(&["a.obj", "a.mtl", "a.png", "p.csv"]), Some(0));
         assert_eq!(left(&["a.ron", "b.ron", "p.csv", "a.ply"]), Some(2));

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use super::commands::Next;
 use super::dialogs::Ask;
-use super::outside::Theirs;
+use super::outside::ExternalVersion;
 use super::prompts::PathPrompt;
 use crate::editor::Editor;
 use crate::worker::Background;
 
 /// A dialog that returns nothing sooner than a user could cancel it was never shown.
-const NO_DIALOG: Duration = Duration::from_millis(400);
+const MIN_DIALOG_TIME: Duration = Duration::from_millis(400);
 
 /// The outcome of a file operation, for the window to act on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,19 +62,19 @@ pub enum Prompt {
     /// Which file, if the desktop offers no dialog.
     Path(PathRequest, PathPrompt),
     /// What to do about a file that another program has changed; with the request to save that revealed it, if any.
-    Outside(Box<Theirs>, Option<PathRequest>),
+    Outside(Box<ExternalVersion>, Option<PathRequest>),
 }
 
 /// A desktop dialog that is open.
-pub struct Waiting {
+pub struct OpenDialog {
     /// The request it is for.
-    pub wish: PathRequest,
+    pub request: PathRequest,
     answer: Background<Option<PathBuf>>,
     since: Instant,
 }
 
 /// The state of a desktop dialog.
-pub enum Answered {
+pub enum DialogState {
     /// No answer yet.
     NotYet,
     /// A path was chosen.
@@ -85,24 +85,24 @@ pub enum Answered {
     NoDialog,
 }
 
-impl Waiting {
+impl OpenDialog {
     /// Wraps a dialog that has just been opened.
-    pub fn new(wish: PathRequest, answer: Background<Option<PathBuf>>) -> Self {
+    pub fn new(request: PathRequest, answer: Background<Option<PathBuf>>) -> Self {
         let since = Instant::now();
         Self {
-            wish,
+            request,
             answer,
             since,
         }
     }
 
     /// Returns the answer of the dialog, if there is one.
-    pub fn answered(&mut self) -> Answered {
+    pub fn poll(&mut self) -> DialogState {
         match self.answer.take() {
-            None => Answered::NotYet,
-            Some(Ok(Some(path))) => Answered::Path(path),
-            Some(_) if self.since.elapsed() < NO_DIALOG => Answered::NoDialog,
-            Some(_) => Answered::Cancelled,
+            None => DialogState::NotYet,
+            Some(Ok(Some(path))) => DialogState::Path(path),
+            Some(_) if self.since.elapsed() < MIN_DIALOG_TIME => DialogState::NoDialog,
+            Some(_) => DialogState::Cancelled,
         }
     }
 }

@@ -9,25 +9,25 @@ use egui::{Context, Ui};
 
 use super::commands::Next;
 use super::dialogs::{Ask, Dialogs};
-use super::file_requests::{Answered, FileOutcome, PathRequest, Prompt, Waiting};
+use super::file_requests::{DialogState, FileOutcome, OpenDialog, PathRequest, Prompt};
 use super::folders::Folders;
-use super::interchange::{export_job, export_path, export_povray, import_path, imported};
-use super::outside::{OUTSIDE, Theirs, Watch, forget_lost, tell_lost};
+use super::interchange::{export_job, export_path, export_povray, import_parts, import_path};
+use super::outside::{ExternalVersion, OUTSIDE, Watch, clear_lost, report_lost};
 use super::prompts::{PathPrompt, Reply, ask_about_changes, ask_to_quit};
-use super::reading::{Read, Reading};
+use super::reading::{ReadOutcome, Reading};
 use crate::editor::{Action, Editor, OwnFile, Time};
 use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
 /// Longest time for which reading a file may block the window, so that small files open at once.
-const AT_ONCE: Duration = Duration::from_millis(30);
+const MAX_BLOCKING: Duration = Duration::from_millis(30);
 /// Number of files that "Open recent" remembers.
-const RECENT: usize = 10;
+const MAX_RECENT: usize = 10;
 
 /// File operations in progress.
 pub struct Files {
     dialogs: Box<dyn Dialogs>,
-    waiting: Option<Waiting>,
+    dialog: Option<OpenDialog>,
     prompt: Option<Prompt>,
     /// Files being read, first in first out.
     reading: VecDeque<Reading>,
@@ -43,7 +43,7 @@ impl Files {
     pub fn new(dialogs: Box<dyn Dialogs>, recent: Vec<PathBuf>, folders: Folders) -> Self {
         Self {
             dialogs,
-            waiting: None,
+            dialog: None,
             prompt: None,
             reading: VecDeque::new(),
             watch: Watch::default(),
@@ -69,7 +69,7 @@ impl Files {
             self.prompt = Some(Prompt::Unsaved(next));
             return None;
         }
-        self.go_on(ctx, editor, next)
+        self.proceed(ctx, editor, next)
     }
 
     /// Asks whether to quit, or what to do with unsaved changes before quitting.
@@ -93,32 +93,32 @@ impl Files {
         editor: &mut Editor,
         then: Option<Next>,
     ) -> Option<FileOutcome> {
-        let wish = PathRequest::new(editor, Ask::SaveScene, then);
+        let request = PathRequest::new(editor, Ask::SaveScene, then);
         if let Some(path) = editor.path().map(Path::to_owned) {
-            self.answered(ctx, editor, wish, path)
+            self.handle_path(ctx, editor, request, path)
         } else {
-            self.wish(ctx, editor, wish);
+            self.open_dialog(ctx, editor, request);
             None
         }
     }
 
     /// Asks for a path.
     pub fn ask(&mut self, ctx: &Context, editor: &mut Editor, ask: Ask) {
-        self.wish(ctx, editor, PathRequest::new(editor, ask, None));
+        self.open_dialog(ctx, editor, PathRequest::new(editor, ask, None));
     }
 
-    fn wish(&mut self, ctx: &Context, editor: &mut Editor, wish: PathRequest) {
-        if self.waiting.is_some() {
+    fn open_dialog(&mut self, ctx: &Context, editor: &mut Editor, request: PathRequest) {
+        if self.dialog.is_some() {
             return editor.notify("Another file dialog is open: close it first".to_owned());
         }
-        let suggested = self.folders.suggest(editor, &wish.ask);
-        let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
-        self.waiting = Some(Waiting::new(wish, answer));
+        let suggested = self.folders.suggest(editor, &request.ask);
+        let answer = self.dialogs.ask(ctx, &request.ask, suggested);
+        self.dialog = Some(OpenDialog::new(request, answer));
     }
 
     /// Whether no question or dialog is open. While one is, no other document may replace the one it is about.
     fn is_free(&self) -> bool {
-        self.prompt.is_none() && self.waiting.is_none()
+        self.prompt.is_none() && self.dialog.is_none()
     }
 
     /// The file that is being read.
@@ -140,41 +140,41 @@ impl Files {
         // Nor may a file that was read move the camera of a flight that is being recorded.
         let is_free = self.is_free() && !editor.is_recording();
         if !self.reading.is_empty() && is_free {
-            ctx.request_repaint_after(AT_ONCE);
-            self.take_read(ctx, editor, Duration::ZERO);
+            ctx.request_repaint_after(MAX_BLOCKING);
+            self.take_finished_read(ctx, editor, Duration::ZERO);
         } else if is_free && self.watch.is_due(ctx, editor) {
-            self.look_outside(editor);
+            self.check_external_change(editor);
             let changed = self.watch.changed_meshes(editor);
-            self.reading.extend(Reading::again(editor, changed));
+            self.reading.extend(Reading::reload_meshes(editor, changed));
         }
         // One question at a time.
-        let mut waiting = self.waiting.take_if(|_| self.prompt.is_none())?;
-        match waiting.answered() {
-            Answered::NotYet => self.waiting = Some(waiting),
-            Answered::Path(path) => {
-                let wish = waiting.wish;
-                let full = wish.ask.with_ending(path.clone());
-                let is_unasked = wish.ask.writes() && full != path && full.exists();
-                if is_unasked || !wish.ask.takes(&full) {
+        let mut dialog = self.dialog.take_if(|_| self.prompt.is_none())?;
+        match dialog.poll() {
+            DialogState::NotYet => self.dialog = Some(dialog),
+            DialogState::Path(path) => {
+                let request = dialog.request;
+                let full = request.ask.with_ending(path.clone());
+                let needs_confirmation = request.ask.writes() && full != path && full.exists();
+                if needs_confirmation || !request.ask.accepts(&full) {
                     // The desktop did not ask about replacing the file of this name, or does not know the endings.
-                    self.prompt(wish, &full, "Path");
+                    self.ask_for_path(request, &full, "Path");
                     return None;
                 }
-                return self.answered(ctx, editor, wish, full);
+                return self.handle_path(ctx, editor, request, full);
             }
-            Answered::NoDialog => {
-                let suggested = self.folders.suggest(editor, &waiting.wish.ask);
+            DialogState::NoDialog => {
+                let suggested = self.folders.suggest(editor, &dialog.request.ask);
                 let label = "Path (this desktop offers no file dialog)";
-                self.prompt(waiting.wish, &suggested, label);
+                self.ask_for_path(dialog.request, &suggested, label);
             }
-            Answered::Cancelled => {}
+            DialogState::Cancelled => {}
         }
         None
     }
 
-    fn prompt(&mut self, wish: PathRequest, suggested: &Path, label: &'static str) {
-        let prompt = PathPrompt::new(wish.ask.clone(), suggested, label);
-        self.prompt = Some(Prompt::Path(wish, prompt));
+    fn ask_for_path(&mut self, request: PathRequest, suggested: &Path, label: &'static str) {
+        let prompt = PathPrompt::new(request.ask.clone(), suggested, label);
+        self.prompt = Some(Prompt::Path(request, prompt));
     }
 
     /// Shows the open question; `exports` describes exports that are still running.
@@ -187,11 +187,11 @@ impl Files {
         let ctx = ui.ctx().clone();
         let answer = match self.prompt.as_mut()? {
             Prompt::Unsaved(next) => {
-                let going = exports.filter(|_| matches!(next, Next::Quit | Next::QuitAnyway));
-                if going.is_some() {
+                let running = exports.filter(|_| matches!(next, Next::Quit | Next::QuitAnyway));
+                if running.is_some() {
                     *next = Next::QuitAnyway;
                 }
-                ask_about_changes(&ctx, &editor.title(), going)
+                ask_about_changes(&ctx, &editor.title(), running)
             }
             Prompt::Saving(_) if editor.is_making_keys() => Reply::Open,
             Prompt::Saving(_) => Reply::Yes,
@@ -210,41 +210,41 @@ impl Files {
             (Prompt::Unsaved(next) | Prompt::Saving(next), Reply::Yes) => {
                 self.save_then(&ctx, editor, Some(next))
             }
-            (Prompt::Unsaved(next), Reply::No) => self.go_on(&ctx, editor, next),
+            (Prompt::Unsaved(next), Reply::No) => self.proceed(&ctx, editor, next),
             (Prompt::Quit, Reply::Yes) => Some(FileOutcome::Quit),
-            (Prompt::Path(wish, mut prompt), Reply::Yes) => {
-                let outcome = self.answered(&ctx, editor, wish.clone(), prompt.path());
-                if wish.document == editor.documents()
-                    && let Some(why) = editor.take_error(wish.ask.title())
+            (Prompt::Path(request, mut prompt), Reply::Yes) => {
+                let outcome = self.handle_path(&ctx, editor, request.clone(), prompt.path());
+                if request.document == editor.documents()
+                    && let Some(why) = editor.take_error(request.ask.title())
                 {
                     prompt.refuse(why);
-                    self.prompt = Some(Prompt::Path(wish, prompt));
+                    self.prompt = Some(Prompt::Path(request, prompt));
                 }
                 outcome
             }
-            (Prompt::Outside(theirs, wish), answer) => {
-                self.settle_outside(&ctx, editor, (*theirs, answer), wish)
+            (Prompt::Outside(theirs, request), answer) => {
+                self.apply_external_answer(&ctx, editor, (*theirs, answer), request)
             }
             _ => None,
         }
     }
 
-    fn answered(
+    fn handle_path(
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
-        wish: PathRequest,
+        request: PathRequest,
         path: PathBuf,
     ) -> Option<FileOutcome> {
-        editor.begin(wish.ask.title());
-        self.folders.note(&wish.ask, &path);
+        editor.begin(request.ask.title());
+        self.folders.note(&request.ask, &path);
         // The desktop's dialog leaves the window usable: nobody asked about what was edited there in the meantime.
-        let is_same = wish.document == editor.documents();
-        let is_as_asked = is_same && wish.revision == editor.revision();
-        match wish.ask {
-            Ask::OpenScene if !is_as_asked => return self.start(ctx, editor, Next::Open(path)),
+        let is_same_document = request.document == editor.documents();
+        let is_unchanged = is_same_document && request.revision == editor.revision();
+        match request.ask {
+            Ask::OpenScene if !is_unchanged => return self.start(ctx, editor, Next::Open(path)),
             Ask::OpenScene => self.open(ctx, editor, &path),
-            ask if !is_same => {
+            ask if !is_same_document => {
                 let why = "The scene this was for is no longer open";
                 editor.report_error_in(ask.title(), why.to_owned());
             }
@@ -257,57 +257,57 @@ impl Files {
             Ask::ExportPovray => export_povray(editor, &path),
             Ask::SaveScene if editor.would_lose(&path) => {
                 // Marks the current state of the file as seen, whatever the answer will be.
-                self.watch.is_news(&path);
-                let (theirs, then) = (Document::load_stamped(&path), wish.then.clone());
-                if self.meet_theirs(editor, theirs, Some(wish)) {
-                    return self.go_on(ctx, editor, then?);
+                self.watch.is_changed(&path);
+                let (theirs, then) = (Document::load_stamped(&path), request.then.clone());
+                if self.resolve_external_change(editor, theirs, Some(request)) {
+                    return self.proceed(ctx, editor, then?);
                 }
             }
             Ask::SaveScene => match editor.save(&path) {
                 Ok(()) => {
-                    self.remember(editor);
-                    return self.go_on(ctx, editor, wish.then?);
+                    self.add_to_recent(editor);
+                    return self.proceed(ctx, editor, request.then?);
                 }
-                Err(error) => editor.report_error_in(wish.ask.title(), error.to_string()),
+                Err(error) => editor.report_error_in(request.ask.title(), error.to_string()),
             },
         }
         None
     }
 
     /// Reloads a file that another program has written; asks if the document was changed too.
-    fn look_outside(&mut self, editor: &mut Editor) {
+    fn check_external_change(&mut self, editor: &mut Editor) {
         let Some(path) = editor.path().map(Path::to_owned) else {
             return;
         };
         let is_gone = self.watch.note_gone(editor, &path);
-        let (is_news, broken) = (self.watch.is_news(&path), self.watch.take_broken());
-        if let Some(why) = broken.filter(|_| !is_news) {
-            tell_lost(editor, OwnFile::Broken, why);
+        let (is_changed, broken) = (self.watch.is_changed(&path), self.watch.take_broken());
+        if let Some(why) = broken.filter(|_| !is_changed) {
+            report_lost(editor, OwnFile::Broken, why);
         }
-        if !is_news || is_gone {
+        if !is_changed || is_gone {
             return;
         }
         if !editor.is_changed_outside() {
-            return forget_lost(editor);
+            return clear_lost(editor);
         }
         // An unreadable file may be half written; the next check, or the next save, will tell.
         let theirs = match Document::load_stamped(&path) {
             Ok(theirs) => theirs,
-            Err(SceneError::Disk { .. }) => return self.watch.look_again(),
+            Err(SceneError::Disk { .. }) => return self.watch.forget_modified(),
             Err(error) => return self.watch.note_broken(error.to_string()),
         };
-        self.meet_theirs(editor, Ok(theirs), None);
+        self.resolve_external_change(editor, Ok(theirs), None);
     }
 
     /// Takes what another program has written if that loses nothing, otherwise asks. Returns whether it was taken.
-    fn meet_theirs(
+    fn resolve_external_change(
         &mut self,
         editor: &mut Editor,
         theirs: Result<(Document, Stamp), SceneError>,
-        wish: Option<PathRequest>,
+        request: Option<PathRequest>,
     ) -> bool {
         if theirs.is_ok() {
-            forget_lost(editor);
+            clear_lost(editor);
         }
         match theirs {
             Ok(theirs) if !editor.is_dirty() || theirs.0.scene == **editor.scene() => {
@@ -315,39 +315,39 @@ impl Files {
                 return true;
             }
             theirs => {
-                let theirs = Box::new(Theirs::new(editor, theirs));
-                self.prompt = Some(Prompt::Outside(theirs, wish));
+                let theirs = Box::new(ExternalVersion::new(editor, theirs));
+                self.prompt = Some(Prompt::Outside(theirs, request));
             }
         }
         false
     }
 
-    fn settle_outside(
+    fn apply_external_answer(
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
-        (theirs, answer): (Theirs, Reply),
-        wish: Option<PathRequest>,
+        (theirs, answer): (ExternalVersion, Reply),
+        request: Option<PathRequest>,
     ) -> Option<FileOutcome> {
-        let then = wish.as_ref().and_then(|wish| wish.then.clone());
+        let then = request.as_ref().and_then(|request| request.then.clone());
         match answer {
             Reply::Yes => {
-                theirs.leave(editor);
-                return wish.and_then(|_| self.save_then(ctx, editor, then));
+                theirs.reject(editor);
+                return request.and_then(|_| self.save_then(ctx, editor, then));
             }
             Reply::No => {
-                theirs.take(editor);
-                return then.and_then(|next| self.go_on(ctx, editor, next));
+                theirs.accept(editor);
+                return then.and_then(|next| self.proceed(ctx, editor, next));
             }
             Reply::Other => {
-                self.wish(ctx, editor, PathRequest::new(editor, Ask::SaveScene, then));
+                self.open_dialog(ctx, editor, PathRequest::new(editor, Ask::SaveScene, then));
             }
             _ => {}
         }
         None
     }
 
-    fn go_on(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
+    fn proceed(&mut self, ctx: &Context, editor: &mut Editor, next: Next) -> Option<FileOutcome> {
         // A problem with another file no longer matters.
         editor.begin(Ask::OpenScene.title());
         if matches!(next, Next::New | Next::Example(_)) {
@@ -370,21 +370,21 @@ impl Files {
         // A new scene replaces one that is being read; meshes for this document go on if the document does.
         self.reading.retain(|reading| !reading.is_scene());
         self.reading.push_front(Reading::scene(editor, path));
-        self.take_read(ctx, editor, AT_ONCE);
+        self.take_finished_read(ctx, editor, MAX_BLOCKING);
     }
 
     /// Opens a file before there is a window.
     pub fn open_now(&mut self, editor: &mut Editor, path: &Path) {
-        self.opened(editor, path, Document::load_stamped(path));
+        self.finish_opening(editor, path, Document::load_stamped(path));
     }
 
     /// Imports the parts of a mesh file as objects.
     pub fn import_mesh(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
         self.reading.push_back(Reading::parts(editor, path));
-        self.take_read(ctx, editor, AT_ONCE);
+        self.take_finished_read(ctx, editor, MAX_BLOCKING);
     }
 
-    fn take_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
+    fn take_finished_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
         let first = if self.is_free() {
             self.reading.front_mut()
         } else {
@@ -397,24 +397,26 @@ impl Files {
             return;
         };
         match read {
-            Read::Scene(_) if reading.is_outrun(editor) => {
+            ReadOutcome::Scene(_) if reading.is_outdated(editor) => {
                 self.start(ctx, editor, Next::Open(reading.path));
             }
-            Read::Scene(document) => self.opened(editor, &reading.path, *document),
-            Read::Mesh(Ok(file)) if !reading.is_of_another(editor) => {
-                imported(editor, &reading.path, file);
+            ReadOutcome::Scene(document) => self.finish_opening(editor, &reading.path, *document),
+            ReadOutcome::Mesh(Ok(file)) if !reading.is_for_other_document(editor) => {
+                import_parts(editor, &reading.path, file);
             }
-            Read::Mesh(read) => {
+            ReadOutcome::Mesh(read) => {
                 let why = read.map_or_else(|error| error.to_string(), |_| reading.describe_late());
                 editor.report_error_in(Ask::ImportMesh.title(), why);
             }
-            Read::Again(sources) if !reading.is_of_another(editor) => editor.take_meshes(sources),
-            Read::Again(_) => {}
-            Read::Nothing => editor.report_error(reading.describe_fault()),
+            ReadOutcome::ReloadedMeshes(sources) if !reading.is_for_other_document(editor) => {
+                editor.take_meshes(sources)
+            }
+            ReadOutcome::ReloadedMeshes(_) => {}
+            ReadOutcome::Nothing => editor.report_error(reading.describe_fault()),
         }
     }
 
-    fn opened(
+    fn finish_opening(
         &mut self,
         editor: &mut Editor,
         path: &Path,
@@ -425,7 +427,7 @@ impl Files {
                 editor.begin(Ask::OpenScene.title());
                 editor.begin(OUTSIDE);
                 editor.open(document, path);
-                self.remember(editor);
+                self.add_to_recent(editor);
             }
             Err(error) => {
                 self.recent
@@ -435,10 +437,10 @@ impl Files {
         }
     }
 
-    fn remember(&mut self, editor: &Editor) {
+    fn add_to_recent(&mut self, editor: &Editor) {
         let Some(path) = editor.path() else { return };
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_owned());
-        self.recent.truncate(RECENT);
+        self.recent.truncate(MAX_RECENT);
     }
 }

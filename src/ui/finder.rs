@@ -9,7 +9,7 @@ use egui::{
 use indexmap::IndexSet;
 
 use super::add::Addition;
-use super::commands::{self, Command, Next, Zoom, name_of};
+use super::commands::{self, Command, Next, Zoom, key_name};
 use super::dialogs::Ask;
 use super::hint::Hinted as _;
 use super::layout::WindowPart;
@@ -27,7 +27,7 @@ const HEIGHT: f32 = 12.0 * ROW;
 /// Distance of the finder from the upper border of the window, in points.
 const TOP: f32 = 5.0 * ROW;
 /// Most matches that are listed.
-const MOST: usize = 200;
+const MAX_MATCHES: usize = 200;
 
 /// The state of the finder.
 #[derive(Debug, Default)]
@@ -36,44 +36,44 @@ pub struct Finder {
     pub is_open: bool,
     text: String,
     /// Index of the marked match.
-    meant: usize,
+    marked: usize,
 }
 
 /// A match.
-struct Find {
+struct Match {
     name: String,
     /// Text on the right: its keys, its kind, or why it is not possible.
-    aside: String,
-    what: Found,
+    right_text: String,
+    target: Target,
     is_enabled: bool,
 }
 
-impl Find {
+impl Match {
     /// Creates a match that is possible.
-    fn of(name: String, aside: &str, what: Found) -> Self {
+    fn of(name: String, right_text: &str, target: Target) -> Self {
         Self {
             name,
-            aside: aside.to_owned(),
-            what,
+            right_text: right_text.to_owned(),
+            target,
             is_enabled: true,
         }
     }
 }
 
-enum Found {
+enum Target {
     Command(Command),
     Selection(Selection),
     Addition(Addition),
 }
 
-impl Found {
-    fn is(&self, command: &Command) -> bool {
-        matches!(self, Self::Command(own) if own == command)
+impl Target {
+    fn is_command(&self, command: &Command) -> bool {
+        matches!(self, Self::Command(found) if found == command)
     }
 }
 
 /// Other names of commands in menus and buttons, or other words for them, in lower case.
-const ALSO: [(Command, &str); 24] = [
+const ALIASES: [(Command, &str); 24] = [
     (Command::Ask(Ask::SaveScene), "save as"),
     (Command::Ask(Ask::SaveImage), "save image render"),
     (Command::HighRes, "render"),
@@ -97,11 +97,11 @@ const ALSO: [(Command, &str); 24] = [
     (Command::Shortcuts, "help keys shortcuts"),
     (Command::Zoom(Zoom::In), "zoom in"),
     (Command::Zoom(Zoom::Out), "zoom out"),
-    (Command::Zoom(Zoom::Usual), "reset zoom"),
+    (Command::Zoom(Zoom::Default), "reset zoom"),
 ];
 
 /// Other words for what can be added, in lower case.
-const ALSO_ADDED: [(&str, &str); 6] = [
+const ADDITION_ALIASES: [(&str, &str); 6] = [
     ("Add Sphere", "ball"),
     ("Add Plane", "floor ground wall"),
     ("Add Disc", "circle coin"),
@@ -137,7 +137,7 @@ impl Finder {
         let modal = Modal::new(id).area(area).frame(frame);
         let shown = modal.show(ctx, |ui| {
             ui.set_width(WIDTH);
-            self.ask(ui, (editor, recent))
+            self.show_search(ui, (editor, recent))
         });
         if shown.inner.is_some() || shown.should_close() {
             self.is_open = false;
@@ -146,14 +146,14 @@ impl Finder {
         }
         if let Some(target) = shown.inner {
             match target {
-                Found::Command(command) => out.commands.push(command),
-                Found::Selection(selection) => out.select(selection),
-                Found::Addition(addition) => out.edit(addition.edit(editor.shown())),
+                Target::Command(command) => out.commands.push(command),
+                Target::Selection(selection) => out.select(selection),
+                Target::Addition(addition) => out.edit(addition.edit(editor.shown())),
             }
         }
     }
 
-    fn ask(&mut self, ui: &mut Ui, known: (&Editor, &[PathBuf])) -> Option<Found> {
+    fn show_search(&mut self, ui: &mut Ui, sources: (&Editor, &[PathBuf])) -> Option<Target> {
         let step = |ui: &mut Ui, key: Key| {
             ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key))
         };
@@ -165,15 +165,15 @@ impl Finder {
         let field = ui.add(field).hint("Enter runs the highlighted entry");
         field.request_focus();
         if field.changed() {
-            self.meant = 0;
+            self.marked = 0;
             // The first frame after typing into an empty field shows nothing.
             ui.request_repaint();
         }
-        let finds = finds(ui, known, &self.text);
-        let last = finds.len().saturating_sub(1);
-        self.meant = (self.meant + down).saturating_sub(up).min(last);
+        let matches = find_matches(ui, sources, &self.text);
+        let last = matches.len().saturating_sub(1);
+        self.marked = (self.marked + down).saturating_sub(up).min(last);
         let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
-        let mut taken = is_entered.then_some(self.meant);
+        let mut chosen = is_entered.then_some(self.marked);
         ui.add_space(GRID / 2.0);
         ScrollArea::vertical()
             .max_height(HEIGHT)
@@ -181,81 +181,85 @@ impl Finder {
             .min_scrolled_height(HEIGHT)
             .auto_shrink([false, true])
             .show(ui, |ui| {
-                for (index, find) in finds.iter().enumerate() {
-                    let name = egui::RichText::new(&find.name).atom_shrink(true);
-                    let button = Button::selectable(index == self.meant, name)
+                for (index, entry) in matches.iter().enumerate() {
+                    let name = egui::RichText::new(&entry.name).atom_shrink(true);
+                    let button = Button::selectable(index == self.marked, name)
                         .truncate()
-                        .right_text(&find.aside)
+                        .right_text(&entry.right_text)
                         .min_size(vec2(ui.available_width(), ROW));
-                    let shown = ui.add_enabled(find.is_enabled, button);
-                    if index == self.meant && (down > 0 || up > 0) {
+                    let shown = ui.add_enabled(entry.is_enabled, button);
+                    if index == self.marked && (down > 0 || up > 0) {
                         shown.scroll_to_me(None);
                     }
-                    if shown.accessible_name(&find.name).clicked() {
-                        taken = Some(index);
+                    if shown.accessible_name(&entry.name).clicked() {
+                        chosen = Some(index);
                     }
                 }
             });
-        if finds.is_empty() {
+        if matches.is_empty() {
             ui.weak("Nothing found");
         }
-        let find = finds.into_iter().nth(taken?)?;
-        find.is_enabled.then_some(find.what)
+        let entry = matches.into_iter().nth(chosen?)?;
+        entry.is_enabled.then_some(entry.target)
     }
 }
 
 /// Returns everything whose name contains all the words: possible things first, then those that begin with the text.
-fn finds(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Find> {
+fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Match> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
-    let has = |name: &str| {
+    let matches_query = |name: &str| {
         let name = name.to_lowercase();
         words.iter().all(|word| name.contains(word))
     };
     let named = commands(ui, editor, recent).chain(additions());
-    let mut finds: Vec<Find> = named
-        .filter(|find| has(&format!("{} {}", find.name, also(find))))
+    let mut matches: Vec<Match> = named
+        .filter(|entry| matches_query(&format!("{} {}", entry.name, aliases_of(entry))))
         .collect();
-    finds.extend(settings(editor).filter_map(|(find, also)| {
-        has(&format!("{} {} {also}", find.name, find.aside)).then_some(find)
+    matches.extend(settings(editor).filter_map(|(entry, aliases)| {
+        matches_query(&format!("{} {} {aliases}", entry.name, entry.right_text)).then_some(entry)
     }));
     // A scene may have very many things.
-    let room = MOST.saturating_sub(finds.len());
-    finds.extend(things(editor, has).take(room));
-    finds.sort_by_key(|find| {
-        let begins = find.name.to_lowercase().starts_with(&text);
-        (!find.is_enabled, !begins)
+    let room = MAX_MATCHES.saturating_sub(matches.len());
+    matches.extend(scene_items(editor, matches_query).take(room));
+    matches.sort_by_key(|entry| {
+        let begins = entry.name.to_lowercase().starts_with(&text);
+        (!entry.is_enabled, !begins)
     });
-    finds
+    matches
 }
 
 fn commands<'a>(
     ui: &'a Ui,
     editor: &'a Editor,
     recent: &'a [PathBuf],
-) -> impl Iterator<Item = Find> + 'a {
+) -> impl Iterator<Item = Match> + 'a {
     let all = commands::all();
     let all = all.filter(|(command, ..)| !matches!(command, Command::Find | Command::Escape));
     let all = all.map(|(command, what, keys)| {
-        let keys = keys.map_or(String::new(), |keys| name_of(ui, keys));
+        let keys = keys.map_or(String::new(), |keys| key_name(ui, keys));
         (command.clone(), what.to_owned(), keys)
     });
     all.chain(choices(editor, recent))
         .map(|(command, name, keys)| {
             let obstacle = obstacle(&command, editor);
-            Find {
+            Match {
                 name,
-                aside: obstacle.map_or(keys, str::to_owned),
+                right_text: obstacle.map_or(keys, str::to_owned),
                 is_enabled: obstacle.is_none(),
-                what: Found::Command(command),
+                target: Target::Command(command),
             }
         })
 }
 
 /// Returns the other names of a match.
-fn also(find: &Find) -> &'static str {
-    let commands = ALSO.iter().filter(|(command, _)| find.what.is(command));
-    let additions = ALSO_ADDED.iter().filter(|(name, _)| find.name == *name);
+fn aliases_of(entry: &Match) -> &'static str {
+    let commands = ALIASES
+        .iter()
+        .filter(|(command, _)| entry.target.is_command(command));
+    let additions = ADDITION_ALIASES
+        .iter()
+        .filter(|(name, _)| entry.name == *name);
     let mut words = commands
         .map(|(_, words)| *words)
         .chain(additions.map(|(_, words)| *words));
@@ -263,8 +267,8 @@ fn also(find: &Find) -> &'static str {
 }
 
 /// Yields the entries of the menu *Add*.
-fn additions() -> impl Iterator<Item = Find> {
-    Addition::all().map(|(addition, _, name)| Find::of(name, "", Found::Addition(addition)))
+fn additions() -> impl Iterator<Item = Match> {
+    Addition::all().map(|(addition, _, name)| Match::of(name, "", Target::Addition(addition)))
 }
 
 /// Yields the entries of submenus, with their names and the text on the right.
@@ -326,7 +330,7 @@ fn choices<'a>(
 }
 
 /// Returns the color pack of the selected object.
-fn worn_by_selected(editor: &Editor) -> Option<Item> {
+fn pack_of_selected(editor: &Editor) -> Option<Item> {
     let (scene, item) = (editor.scene(), editor.selection().item()?);
     let worn = item
         .color_pack(scene)
@@ -335,7 +339,7 @@ fn worn_by_selected(editor: &Editor) -> Option<Item> {
 }
 
 /// Yields the entries at the top of the outliner and the settings of the picture, each with its other names.
-fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
+fn settings(editor: &Editor) -> impl Iterator<Item = (Match, &'static str)> {
     let mut names = vec![
         ("Camera".to_owned(), Selection::Camera, ""),
         (
@@ -350,7 +354,7 @@ fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
         ),
     ];
     let packs = Item::pack(0).name(editor.scene()).map(|_| Item::pack(0));
-    if let Some(pack) = worn_by_selected(editor).or(packs) {
+    if let Some(pack) = pack_of_selected(editor).or(packs) {
         let name = "Color pack: ambient, diffuse, specular, phong, reflective";
         names.push((name.to_owned(), Selection::from(pack), ""));
     }
@@ -359,15 +363,18 @@ fn settings(editor: &Editor) -> impl Iterator<Item = (Find, &'static str)> {
         let name = format!("Picture: {}", chosen.setting.label);
         (name, Selection::Render, chosen.setting.name)
     }));
-    names.into_iter().map(|(name, selection, also)| {
-        (Find::of(name, "setting", Found::Selection(selection)), also)
+    names.into_iter().map(|(name, selection, aliases)| {
+        (
+            Match::of(name, "setting", Target::Selection(selection)),
+            aliases,
+        )
     })
 }
 
-fn things<'a>(
+fn scene_items<'a>(
     editor: &'a Editor,
-    has: impl Fn(&str) -> bool + 'a,
-) -> impl Iterator<Item = Find> + 'a {
+    matches_query: impl Fn(&str) -> bool + 'a,
+) -> impl Iterator<Item = Match> + 'a {
     let scene = editor.scene();
     let lights = (0..scene.lights.len()).map(|index| (Item::light(index), "light"));
     let objects = (0..scene.objects.len()).map(|index| {
@@ -383,10 +390,12 @@ fn things<'a>(
     let groups: IndexSet<&str> = scene.objects.iter().map(|o| o.group.as_str()).collect();
     let groups = groups.into_iter().filter(|group| !group.is_empty());
     let groups = groups.map(|group| (group, "group", None));
-    let all = groups.chain(all).filter(move |(name, ..)| has(name));
+    let all = groups
+        .chain(all)
+        .filter(move |(name, ..)| matches_query(name));
     all.map(|(name, kind, item)| {
         let selection = item.map_or_else(|| Selection::of_group(scene, name), Selection::from);
-        Find::of(name.to_owned(), kind, Found::Selection(selection))
+        Match::of(name.to_owned(), kind, Target::Selection(selection))
     })
 }
 
@@ -396,8 +405,8 @@ mod tests {
 
     #[test]
     fn what_has_other_words_too_can_be_added() {
-        for (name, _) in ALSO_ADDED {
-            assert!(additions().any(|find| find.name == name), "{name}");
+        for (name, _) in ADDITION_ALIASES {
+            assert!(additions().any(|entry| entry.name == name), "{name}");
         }
     }
 }

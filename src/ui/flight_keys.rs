@@ -15,7 +15,7 @@ pub struct FlightKey {
     pub what: &'static str,
 }
 
-const STILL: Motion = Motion {
+const NO_MOTION: Motion = Motion {
     forward: 0.0,
     right: 0.0,
     up: 0.0,
@@ -27,7 +27,7 @@ const STILL: Motion = Motion {
 /// Makes a table of keys, each with its direction of flight and its description in Help.
 macro_rules! flight {
     ($($key:expr, $field:ident: $by:expr, $what:expr;)*) => {
-        &[$(FlightKey { key: $key, motion: Motion { $field: $by, ..STILL }, what: $what }),*]
+        &[$(FlightKey { key: $key, motion: Motion { $field: $by, ..NO_MOTION }, what: $what }),*]
     };
 }
 

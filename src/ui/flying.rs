@@ -16,17 +16,17 @@ const MOUSE_TURN: f64 = 0.004;
 /// Flying speed in scene extents per second: it takes four seconds to cross the scene.
 const EXTENTS_PER_SECOND: f64 = 0.25;
 /// Flying speed in a scene without extent, in world units per second.
-const PLAIN_SPEED: f64 = 50.0;
+const DEFAULT_SPEED: f64 = 50.0;
 /// Factor on the speed while Shift is held.
-const FAST: f64 = 4.0;
+const SHIFT_FACTOR: f64 = 4.0;
 /// Points of the wheel that double the flying speed.
-const WHEEL_DOUBLES: f64 = 100.0;
+const WHEEL_POINTS_PER_DOUBLING: f64 = 100.0;
 /// Least factor on the flying speed.
-pub const SLOWEST: f64 = 0.01;
+pub const MIN_FACTOR: f64 = 0.01;
 /// Greatest factor on the flying speed.
-pub const FASTEST: f64 = 100.0;
+pub const MAX_FACTOR: f64 = 100.0;
 /// Seconds for which a new speed is shown.
-const TOLD: f64 = 1.2;
+const SPEED_SHOWN_SECONDS: f64 = 1.2;
 /// Longest frame that counts, in seconds: after a stall the camera does not leap.
 const LONGEST_FRAME: f64 = 0.1;
 /// Seconds for which the control key must be held alone before it flies down: it also begins shortcuts.
@@ -39,7 +39,7 @@ const WHEEL_QUIET: f64 = 0.4;
 pub struct Flying {
     ctrl: Ctrl,
     /// Keys pressed for a shortcut and still held: they fly only after being pressed again.
-    taken: Vec<Key>,
+    shortcut_keys: Vec<Key>,
     /// Whether keys moved the camera in the last frame.
     keys_fly: bool,
     /// When the wheel last turned.
@@ -54,17 +54,17 @@ pub struct Flying {
 enum Look {
     /// It is not held, or not for looking around.
     #[default]
-    Not,
+    Inactive,
     /// Looking around begins in this frame.
     Begins,
     /// Looking around.
-    Around,
+    Active,
     /// Looking around was cancelled with Escape; the button is still held.
-    GivenUp,
+    Cancelled,
 }
 
 /// Returns whether the secondary button is dragging over the picture.
-fn is_looked_around_in(picture: &Response) -> bool {
+fn is_secondary_drag(picture: &Response) -> bool {
     picture.dragged_by(PointerButton::Secondary)
 }
 
@@ -73,7 +73,7 @@ fn is_looked_around_in(picture: &Response) -> bool {
 enum Ctrl {
     /// It is not held.
     #[default]
-    Up,
+    Released,
     /// Held alone since this time: it may become a flight key or part of a shortcut.
     Waiting(f64),
     /// Flying down together with other keys.
@@ -101,13 +101,17 @@ impl Flying {
         keys_are_free: bool,
         (scene, factor): (&Scene, f64),
     ) -> Option<Motion> {
-        self.take_keys(ui);
+        self.note_shortcut_keys(ui);
         let held = if let Some(picture) = picture.filter(|_| keys_are_free) {
-            self.held(ui, picture)
+            self.held_motion(ui, picture)
         } else {
             // A key that is held for something else flies only after being pressed again.
             let is_held = ui.input(|input| input.modifiers.ctrl);
-            self.ctrl = if is_held { Ctrl::Shortcut } else { Ctrl::Up };
+            self.ctrl = if is_held {
+                Ctrl::Shortcut
+            } else {
+                Ctrl::Released
+            };
             Motion::default()
         };
         self.keys_fly = held != Motion::default();
@@ -117,7 +121,7 @@ impl Flying {
         let mut motion = Motion::default();
         if self.keys_fly {
             let fast = if ui.input(|input| input.modifiers.shift) {
-                FAST
+                SHIFT_FACTOR
             } else {
                 1.0
             };
@@ -127,13 +131,13 @@ impl Flying {
             motion.zoom = held.forward * ZOOM_SPEED * fast * seconds;
         }
         self.look = match self.look {
-            _ if !ui.input(|input| input.pointer.secondary_down()) => Look::Not,
-            Look::Not if picture.is_some_and(is_looked_around_in) => Look::Begins,
-            Look::Begins => Look::Around,
-            going_on => going_on,
+            _ if !ui.input(|input| input.pointer.secondary_down()) => Look::Inactive,
+            Look::Inactive if picture.is_some_and(is_secondary_drag) => Look::Begins,
+            Look::Begins => Look::Active,
+            current => current,
         };
-        let looks = matches!(self.look, Look::Begins | Look::Around);
-        if let Some(picture) = picture.filter(|picture| looks && is_looked_around_in(picture)) {
+        let is_looking = matches!(self.look, Look::Begins | Look::Active);
+        if let Some(picture) = picture.filter(|picture| is_looking && is_secondary_drag(picture)) {
             let moved = drag_of(picture);
             motion.yaw += f64::from(moved.x) * MOUSE_TURN;
             motion.pitch -= f64::from(moved.y) * MOUSE_TURN;
@@ -142,27 +146,27 @@ impl Flying {
     }
 
     /// Whether looking around begins in this frame: it is an undo step of its own, even during a flight.
-    pub fn begins_to_look(&self) -> bool {
+    pub fn begins_looking(&self) -> bool {
         self.look == Look::Begins
     }
 
     /// Consumes Escape while looking around, and returns whether it undoes the camera's motion since that began.
-    pub fn gives_up(&mut self, ui: &Ui) -> bool {
-        let gives_up = matches!(self.look, Look::Begins | Look::Around) && take_escape(ui);
-        if gives_up {
-            self.look = Look::GivenUp;
+    pub fn cancels_look(&mut self, ui: &Ui) -> bool {
+        let cancels_look = matches!(self.look, Look::Begins | Look::Active) && take_escape(ui);
+        if cancels_look {
+            self.look = Look::Cancelled;
             // Keys that flew in the meantime fly only after being pressed again.
-            ui.input(|input| self.taken.extend(&input.keys_down));
+            ui.input(|input| self.shortcut_keys.extend(&input.keys_down));
         }
-        gives_up
+        cancels_look
     }
 
     /// Returns the points that the wheel turned over the picture. While the camera flies or looks around, the wheel
     /// changes `factor`, the factor on the flying speed, instead.
     pub fn wheel(&mut self, ui: &Ui, picture: &Response, factor: &mut f64) -> f64 {
         let is_down = ui.input(|input| input.pointer.secondary_down());
-        let looks = is_down && picture.is_pointer_button_down_on();
-        if !picture.hovered() && !looks {
+        let is_looking = is_down && picture.is_pointer_button_down_on();
+        if !picture.hovered() && !is_looking {
             return 0.0;
         }
         let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
@@ -172,8 +176,9 @@ impl Flying {
         let now = ui.input(|input| input.time);
         // The rest of a turn that changed the speed must not zoom.
         let was_changed = self.changed_at.is_some_and(|at| now - at < WHEEL_QUIET);
-        if looks || self.keys_fly {
-            *factor = (*factor * (wheel / WHEEL_DOUBLES).exp2()).clamp(SLOWEST, FASTEST);
+        if is_looking || self.keys_fly {
+            *factor = (*factor * (wheel / WHEEL_POINTS_PER_DOUBLING).exp2())
+                .clamp(MIN_FACTOR, MAX_FACTOR);
             self.changed_at = Some(now);
             return 0.0;
         }
@@ -185,8 +190,8 @@ impl Flying {
     }
 
     /// Whether the speed was changed a moment ago and is to be shown.
-    pub fn is_speed_told(&mut self, ctx: &Context) -> bool {
-        lasts(ctx, &mut self.changed_at, TOLD)
+    pub fn is_speed_shown(&mut self, ctx: &Context) -> bool {
+        is_recent(ctx, &mut self.changed_at, SPEED_SHOWN_SECONDS)
     }
 
     /// Whether keys move the camera, in which case they are not shortcuts.
@@ -196,13 +201,13 @@ impl Flying {
 
     /// Whether a flight or a turn of the wheel goes on, which is one undo step.
     pub fn is_gesture(&mut self, ctx: &Context) -> bool {
-        let is_turned = lasts(ctx, &mut self.wheel_at, WHEEL_QUIET);
+        let is_turned = is_recent(ctx, &mut self.wheel_at, WHEEL_QUIET);
         let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
         is_turned || self.ctrl.is_flying() || any_down
     }
 
     /// Notes keys held for shortcuts: the control key is often released before the other one.
-    fn take_keys(&mut self, ui: &Ui) {
+    fn note_shortcut_keys(&mut self, ui: &Ui) {
         let may_take = self.ctrl != Ctrl::Flying && !self.is_flying();
         ui.input(|input| {
             // Only the raw events still contain the keys that commands have consumed.
@@ -215,36 +220,37 @@ impl Flying {
                 } if may_take && (modifiers.command || modifiers.alt) => Some(*key),
                 _ => None,
             });
-            self.taken.extend(pressed);
-            self.taken.retain(|key| input.keys_down.contains(key));
+            self.shortcut_keys.extend(pressed);
+            self.shortcut_keys
+                .retain(|key| input.keys_down.contains(key));
         });
     }
 
-    fn held(&mut self, ui: &Ui, picture: &Response) -> Motion {
+    fn held_motion(&mut self, ui: &Ui, picture: &Response) -> Motion {
         let (ctrl, alt, now) =
             ui.input(|input| (input.modifiers.ctrl, input.modifiers.alt, input.time));
-        let any_key = ui.input(is_held_for_more);
+        let has_others = ui.input(is_held_with_others);
         self.ctrl = match self.ctrl {
-            _ if !ctrl => Ctrl::Up,
-            Ctrl::Up if self.keys_fly => Ctrl::Flying,
-            Ctrl::Up | Ctrl::Waiting(_) | Ctrl::FlyingAlone if any_key => Ctrl::Shortcut,
+            _ if !ctrl => Ctrl::Released,
+            Ctrl::Released if self.keys_fly => Ctrl::Flying,
+            Ctrl::Released | Ctrl::Waiting(_) | Ctrl::FlyingAlone if has_others => Ctrl::Shortcut,
             // Outside the picture, it is held for a click that comes later.
-            Ctrl::Up | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
-            Ctrl::Up => Ctrl::Waiting(now),
+            Ctrl::Released | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
+            Ctrl::Released => Ctrl::Waiting(now),
             Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
-            going_on => going_on,
+            current => current,
         };
         if matches!(self.ctrl, Ctrl::Waiting(_)) {
             ui.request_repaint();
         }
-        if self.ctrl == Ctrl::Flying && !any_key {
+        if self.ctrl == Ctrl::Flying && !has_others {
             self.ctrl = Ctrl::FlyingAlone;
         }
         if alt || matches!(self.ctrl, Ctrl::Waiting(_) | Ctrl::Shortcut) {
             return Motion::default();
         }
         let held = FLIGHT.iter().filter(|flight| match flight.key {
-            Some(key) => is_down(ui, flight) && !self.taken.contains(&key),
+            Some(key) => is_down(ui, flight) && !self.shortcut_keys.contains(&key),
             None => self.ctrl.is_flying(),
         });
         held.fold(Motion::default(), |sum, flight| sum.plus(&flight.motion))
@@ -265,7 +271,7 @@ const MODIFIERS: [Key; 8] = [
 
 /// Returns whether the control key is held together with something else: a key, a button, the wheel, or an event that
 /// the desktop made of a shortcut.
-fn is_held_for_more(input: &egui::InputState) -> bool {
+fn is_held_with_others(input: &egui::InputState) -> bool {
     let is_from_desktop =
         |event: &Event| matches!(event, Event::Copy | Event::Cut | Event::Paste(_));
     // Desktops report modifier keys as keys too.
@@ -291,7 +297,7 @@ fn speed(scene: &Scene) -> f64 {
     if extent > 0.0 {
         extent * EXTENTS_PER_SECOND
     } else {
-        PLAIN_SPEED
+        DEFAULT_SPEED
     }
 }
 
@@ -304,7 +310,7 @@ pub fn drag_of(picture: &Response) -> Vec2 {
 }
 
 /// Returns whether something happened less than `seconds` ago; if so, requests a frame for when that is over.
-fn lasts(ctx: &Context, at: &mut Option<f64>, seconds: f64) -> bool {
+fn is_recent(ctx: &Context, at: &mut Option<f64>, seconds: f64) -> bool {
     let now = ctx.input(|input| input.time);
     *at = at.filter(|at| now - at < seconds);
     if at.is_some() {

@@ -28,17 +28,17 @@ impl Folders {
     /// Returns the path to start from: in the folder of the last path of that kind, or that of the document; for files
     /// to be written, with the document's name.
     pub fn suggest(&self, editor: &Editor, ask: &Ask) -> PathBuf {
-        let own = editor.path().and_then(Path::parent);
-        let own = own.filter(|folder| !folder.as_os_str().is_empty());
+        let document_folder = editor.path().and_then(Path::parent);
+        let document_folder = document_folder.filter(|folder| !folder.as_os_str().is_empty());
         let last = self.0.get(&kind(ask)).map(PathBuf::as_path);
         let last = last.filter(|folder| folder.is_dir());
-        let here = std::env::current_dir().unwrap_or_default();
+        let current_dir = std::env::current_dir().unwrap_or_default();
         let folder = match ask {
             // A scene is saved next to its own file, if it has one.
-            Ask::SaveScene => own.or(last),
-            _ => last.or(own),
+            Ask::SaveScene => document_folder.or(last),
+            _ => last.or(document_folder),
         };
-        let folder = folder.unwrap_or(&here);
+        let folder = folder.unwrap_or(&current_dir);
         let stem = editor.stem();
         match ask {
             Ask::OpenScene | Ask::ImportMesh | Ask::ImportPath | Ask::ExportFolder => {

@@ -7,12 +7,12 @@ use egui::{Color32, ColorImage, Context, vec2};
 const COPY: &str = "📋";
 /// Width and height of each of the two sheets of paper, and their distance, in font sizes.
 const SHEET: (f32, f32) = (0.55, 0.7);
-const APART: f32 = 0.18;
+const SHEET_OFFSET: f32 = 0.18;
 
 /// The minus sign of exponents.
 const RAISED_MINUS: &str = "⁻";
 /// Its advance width, its height above the baseline and its thickness, in font sizes.
-const BAR: (f32, f32, f32) = (0.36, 0.56, 0.06);
+const MINUS_BAR: (f32, f32, f32) = (0.36, 0.56, 0.06);
 
 /// Registers rasterizers for these glyphs.
 pub fn install(ctx: &Context) {
@@ -25,14 +25,14 @@ pub fn install(ctx: &Context) {
 }
 
 fn raised_minus(size: f32) -> RasterizedGlyph {
-    let (room, up, thickness) = BAR;
+    let (advance, up, thickness) = MINUS_BAR;
     let pixels = |share: f32| (share * size).round().max(1.0);
-    let bar = [pixels(room * 0.8) as usize, pixels(thickness) as usize];
+    let bar = [pixels(advance * 0.8) as usize, pixels(thickness) as usize];
     RasterizedGlyph {
-        advance_px: pixels(room),
+        advance_px: pixels(advance),
         bitmap: GlyphBitmap {
             image: ColorImage::filled(bar, Color32::WHITE),
-            offset_px: vec2(pixels(room * 0.1), -pixels(up)),
+            offset_px: vec2(pixels(advance * 0.1), -pixels(up)),
             is_color: false,
         },
     }
@@ -41,10 +41,10 @@ fn raised_minus(size: f32) -> RasterizedGlyph {
 /// Draws two sheets of paper, one in front of the other.
 fn two_sheets(size: f32) -> RasterizedGlyph {
     let pixels = |share: f32| (share * size).round().max(1.0) as usize;
-    let (width, height, apart) = (pixels(SHEET.0), pixels(SHEET.1), pixels(APART));
-    let whole = [width + apart, height + apart];
+    let (width, height, offset) = (pixels(SHEET.0), pixels(SHEET.1), pixels(SHEET_OFFSET));
+    let whole = [width + offset, height + offset];
     let mut image = ColorImage::filled(whole, Color32::TRANSPARENT);
-    for (left, top) in [(apart, 0), (0, apart)] {
+    for (left, top) in [(offset, 0), (0, offset)] {
         for row in 0..height {
             for column in 0..width {
                 let is_edge = row == 0 || column == 0 || row + 1 == height || column + 1 == width;

@@ -2,20 +2,20 @@
 
 use egui::{Context, Grid, Label, RichText, ScrollArea, Ui, Vec2, Window, vec2};
 
-use super::commands::{SHORTCUTS, name_of};
+use super::commands::{SHORTCUTS, key_name};
 use super::flight_keys::{FLIGHT, MOUSE};
 use super::theme::{GRID, palette};
 
 /// Size in which all lists are visible, in points.
 const SIZE: Vec2 = vec2(1180.0, 640.0);
 /// Greatest width of a description, in points.
-const WIDEST: f32 = 225.0;
+const DESCRIPTION_WIDTH: f32 = 225.0;
 /// Least window width for two columns, in points.
-const TWO_COLUMNS: f32 = 745.0;
+const TWO_COLUMN_WIDTH: f32 = 745.0;
 /// Least window width for two columns of full width.
-const ROOMY: f32 = 845.0;
+const FULL_COLUMNS_WIDTH: f32 = 845.0;
 /// Width of a description in narrower columns.
-const SLIM: f32 = 170.0;
+const NARROW_DESCRIPTION_WIDTH: f32 = 170.0;
 
 /// Shows the list of shortcuts while `open`.
 pub fn show(ctx: &Context, open: &mut bool) {
@@ -42,14 +42,14 @@ pub fn show(ctx: &Context, open: &mut bool) {
 /// Shows all lists, in as many columns as fit: in a wide window, everything is visible without scrolling.
 fn lists(ui: &mut Ui, width: f32) {
     let commands = SHORTCUTS.iter().map(|shortcut| {
-        let keys: Vec<String> = shortcut.keys.iter().map(|key| name_of(ui, *key)).collect();
+        let keys: Vec<String> = shortcut.keys.iter().map(|key| key_name(ui, *key)).collect();
         (keys.join(", "), shortcut.what)
     });
     let mut commands: Vec<_> = commands.collect();
-    if width < TWO_COLUMNS {
-        list(ui, ("Commands", WIDEST), commands);
+    if width < TWO_COLUMN_WIDTH {
+        list(ui, ("Commands", DESCRIPTION_WIDTH), commands);
         ui.add_space(2.0 * GRID);
-        flying_and_mouse(ui, WIDEST);
+        flying_and_mouse(ui, DESCRIPTION_WIDTH);
         return;
     }
     let is_wide = width >= SIZE.x;
@@ -59,43 +59,47 @@ fn lists(ui: &mut Ui, width: f32) {
     } else {
         (commands.len() + FLIGHT.len() + MOUSE.len()).div_ceil(2)
     };
-    let rest = commands.split_off(first.min(commands.len()));
-    let widest = if width < ROOMY { SLIM } else { WIDEST };
+    let remaining = commands.split_off(first.min(commands.len()));
+    let max_width = if width < FULL_COLUMNS_WIDTH {
+        NARROW_DESCRIPTION_WIDTH
+    } else {
+        DESCRIPTION_WIDTH
+    };
     ui.horizontal_top(|ui| {
-        list(ui, ("Commands", widest), commands);
+        list(ui, ("Commands", max_width), commands);
         ui.add_space(2.0 * GRID);
         let more = |ui: &mut Ui| {
-            list(ui, ("More commands", widest), rest);
+            list(ui, ("More commands", max_width), remaining);
             ui.add_space(2.0 * GRID);
         };
         if is_wide {
             more(ui);
-            ui.vertical(|ui| flying_and_mouse(ui, widest));
+            ui.vertical(|ui| flying_and_mouse(ui, max_width));
         } else {
             ui.vertical(|ui| {
                 more(ui);
-                flying_and_mouse(ui, widest);
+                flying_and_mouse(ui, max_width);
             });
         }
     });
 }
 
-fn flying_and_mouse(ui: &mut Ui, widest: f32) {
+fn flying_and_mouse(ui: &mut Ui, max_width: f32) {
     let flight = FLIGHT.iter().map(|key| (key.name().to_owned(), key.what));
-    list(ui, ("Flying (hold)", widest), flight.collect());
+    list(ui, ("Flying (hold)", max_width), flight.collect());
     ui.add_space(2.0 * GRID);
     let mouse = MOUSE.iter().map(|(name, what)| ((*name).to_owned(), *what));
-    list(ui, ("Mouse", widest), mouse.collect());
+    list(ui, ("Mouse", max_width), mouse.collect());
 }
 
-fn list(ui: &mut Ui, (title, widest): (&str, f32), keys: Vec<(String, &str)>) {
+fn list(ui: &mut Ui, (title, max_width): (&str, f32), keys: Vec<(String, &str)>) {
     ui.vertical(|ui| {
         ui.label(RichText::new(title).strong());
         ui.spacing_mut().interact_size.y = 0.0;
         Grid::new(title)
             .num_columns(2)
             .spacing([GRID, GRID / 4.0])
-            .max_col_width(widest)
+            .max_col_width(max_width)
             .show(ui, |ui| {
                 for (key, what) in keys {
                     ui.label(

@@ -23,9 +23,12 @@ impl Hinted for Response {
         if self.ctx.input(|input| input.pointer.any_down()) {
             return;
         }
-        let beside = Rect::from_x_y_ranges(ui.clip_rect().x_range(), self.rect.y_range());
+        let panel_side = Rect::from_x_y_ranges(ui.clip_rect().x_range(), self.rect.y_range());
         let mut tooltip = Tooltip::for_enabled(self);
-        tooltip.popup = tooltip.popup.anchor(beside).align(RectAlign::LEFT_START);
+        tooltip.popup = tooltip
+            .popup
+            .anchor(panel_side)
+            .align(RectAlign::LEFT_START);
         tooltip.show(|ui| {
             ui.set_max_width(ui.spacing().tooltip_width);
             ui.label(text);

@@ -13,36 +13,36 @@ use crate::worker::Frame;
 /// Width and height of the graph in points.
 const SIZE: (f32, f32) = (192.0, 64.0);
 /// Height of the text below, in points.
-const WORDS: f32 = 18.0;
+const TEXT_HEIGHT: f32 = 18.0;
 
 /// The histogram of the last finished picture.
 #[derive(Default)]
 pub struct Levels {
-    of: Option<Arc<Image>>,
-    counted: Option<Histogram>,
+    image: Option<Arc<Image>>,
+    histogram: Option<Histogram>,
 }
 
 impl Levels {
     /// Counts a finished picture, unless it is the same as before. Returns the share of its pixels that clip.
     pub fn update(&mut self, frame: &Frame, scene: &Scene) -> Option<f64> {
-        let is_same = |of: &Arc<Image>| Arc::ptr_eq(of, &frame.image);
-        if frame.step != 1 || self.of.as_ref().is_some_and(is_same) {
+        let is_same = |image: &Arc<Image>| Arc::ptr_eq(image, &frame.image);
+        if frame.step != 1 || self.image.as_ref().is_some_and(is_same) {
             return None;
         }
-        self.of = Some(Arc::clone(&frame.image));
-        let counted = Histogram::of(&frame.image, to_bytes(scene.background));
-        let clipped = counted.clipped;
-        self.counted = Some(counted);
+        self.image = Some(Arc::clone(&frame.image));
+        let histogram = Histogram::of(&frame.image, to_bytes(scene.background));
+        let clipped = histogram.clipped;
+        self.histogram = Some(histogram);
         Some(clipped)
     }
 
     /// Draws the histogram over the lower left corner of the picture.
     pub fn show(&self, ui: &Ui, picture: Rect) {
-        let Some(histogram) = &self.counted else {
+        let Some(histogram) = &self.histogram else {
             return;
         };
         let colors = palette(ui.ctx());
-        let size = vec2(SIZE.0, SIZE.1 + WORDS) + vec2(GRID, GRID) * 2.0;
+        let size = vec2(SIZE.0, SIZE.1 + TEXT_HEIGHT) + vec2(GRID, GRID) * 2.0;
         let corner = picture.left_bottom() + vec2(GRID, -GRID - size.y);
         let frame = Rect::from_min_size(corner, size);
         let painter = ui.painter().with_clip_rect(picture);

@@ -16,7 +16,7 @@ use crate::scene::{Animation, Camera, MAX_BYTES, Scene, around, check, read_text
 use crate::words::{counted, for_shell};
 
 /// Factor between the sizes of a mesh and of the scene from which on the size is reported.
-const ODD: f64 = 20.0;
+const ODD_SIZE_FACTOR: f64 = 20.0;
 
 /// Replaces the camera's keys by those of a file.
 pub fn import_path(editor: &mut Editor, path: &Path) {
@@ -65,7 +65,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
     }
 }
 
-/// Writes the camera's keys, as CSV or RON by the ending of the file, which [`Ask::takes`] has checked.
+/// Writes the camera's keys, as CSV or RON by the ending of the file, which [`Ask::accepts`] has checked.
 pub fn export_path(editor: &mut Editor, path: &Path) {
     let keys = &editor.scene().animation.keys;
     let text = if is_table(path) {
@@ -73,18 +73,18 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
     } else {
         to_text(keys).map_err(Box::<dyn Error>::from)
     };
-    let plain = Default::default();
-    let has_ways = keys
+    let defaults = Default::default();
+    let has_easing = keys
         .iter()
-        .any(|key| (key.interpolation, key.easing) != plain);
+        .any(|key| (key.interpolation, key.easing) != defaults);
     // Someone who exports for another program may know this; someone who takes the file for a copy does not.
-    let lost = if is_table(path) && has_ways {
+    let omission = if is_table(path) && has_easing {
         " without interpolation and easing of the keys; a RON file keeps them"
     } else {
         ""
     };
     match text.and_then(|text| Ok(write_text(path, &text)?)) {
-        Ok(()) => editor.notify(format!("Saved {}{lost}", path.display())),
+        Ok(()) => editor.notify(format!("Saved {}{omission}", path.display())),
         Err(error) => editor.report_error_in(Ask::ExportPath.title(), error.to_string()),
     }
 }
@@ -99,7 +99,7 @@ pub fn export_povray(editor: &mut Editor, path: &Path) {
 
 /// Writes the job template, and next to it the scene in its current state, unless its own saved file is there.
 pub fn export_job(editor: &mut Editor, path: &Path) {
-    match write(editor, path) {
+    match write_job_files(editor, path) {
         Ok(JobFiles {
             scene,
             is_copied,
@@ -121,26 +121,26 @@ pub fn export_job(editor: &mut Editor, path: &Path) {
     }
 }
 
-fn write(editor: &Editor, path: &Path) -> Result<JobFiles, Box<dyn Error>> {
-    let own = editor.path();
-    let beside = path.with_extension("ron");
-    let is_taken = editor.is_dirty() && !editor.scene().has_mesh_files();
-    if is_taken && own.is_some_and(|own| is_same_file(own, &beside)) {
+fn write_job_files(editor: &Editor, path: &Path) -> Result<JobFiles, Box<dyn Error>> {
+    let scene_path = editor.path();
+    let job_scene = path.with_extension("ron");
+    let needs_copy = editor.is_dirty() && !editor.scene().has_mesh_files();
+    if needs_copy && scene_path.is_some_and(|scene_path| is_same_file(scene_path, &job_scene)) {
         let sentence = format!(
             "The job renders {} as it is on disk: save it first",
-            beside.display()
+            job_scene.display()
         );
         return Err(sentence.into());
     }
-    check_whole(editor.scene())?;
+    check_meshes(editor.scene())?;
     let (pattern, folder) = (Pattern::default(), PathBuf::from("frames"));
     let sequence = Sequence::new(editor.scene().clone(), None, pattern, Format::Ppm, folder)?;
-    let own = own.filter(|_| !editor.is_dirty());
-    Ok(write_job(&editor.document(), own, &sequence, path)?)
+    let scene_path = scene_path.filter(|_| !editor.is_dirty());
+    Ok(write_job(&editor.document(), scene_path, &sequence, path)?)
 }
 
 /// Refuses to make frames of a scene with a mesh that could not be read: in a thousand files, nobody would notice.
-pub fn check_whole(scene: &Scene) -> Result<(), String> {
+pub fn check_meshes(scene: &Scene) -> Result<(), String> {
     let problem = scene.mesh_problems().next();
     problem.map_or(Ok(()), |(index, why)| {
         let name = &scene.objects[index].name;
@@ -157,15 +157,15 @@ fn is_table(path: &Path) -> bool {
 /// Returns the camera that sees all of a box; `None` if it would be too far away.
 fn camera_around(scene: &Scene, bounds: (DVec3, DVec3)) -> Option<Camera> {
     let camera = scene.camera.around(scene.render.aspect_ratio(), bounds);
-    let alone = Scene {
+    let camera_only = Scene {
         camera: camera.clone(),
         ..Scene::empty()
     };
-    check(&alone).is_ok().then_some(camera)
+    check(&camera_only).is_ok().then_some(camera)
 }
 
 /// Adds the parts of a mesh file as objects.
-pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
+pub fn import_parts(editor: &mut Editor, path: &Path, file: MeshFile) {
     let MeshFile { parts, notes } = file;
     let count: usize = parts.iter().map(|part| part.triangles.faces().len()).sum();
     let (first, last) = (
@@ -182,9 +182,9 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         return editor.report_error_in(Ask::ImportMesh.title(), why);
     }
     // If nothing else is in the scene, the camera moves to show the parts.
-    let seen = if first == 0 { &parts[..] } else { &[] };
-    let bounds = around(seen.iter().filter_map(|part| part.triangles.bounds()));
-    let odd = odd_size(editor.shown(), &parts);
+    let framed = if first == 0 { &parts[..] } else { &[] };
+    let bounds = around(framed.iter().filter_map(|part| part.triangles.bounds()));
+    let size_note = size_note(editor.shown(), &parts);
     let import = Edit::Import(parts);
     let label = import.label(editor.scene());
     let mut edits = vec![import];
@@ -195,7 +195,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         edits.push(Edit::Group((first..last).collect(), group));
     }
     let camera = bounds.and_then(|bounds| camera_around(editor.shown(), bounds));
-    let how = if camera.is_some() {
+    let frame_hint = if camera.is_some() {
         ""
     } else {
         "; F frames them"
@@ -210,18 +210,22 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let count = counted(count, "triangle");
     let notes = notes.iter().map(|note| format!("; {note}"));
     let notes: String = notes.collect();
-    editor.notify_of_step(format!("{count} from {path}{how}{odd}{notes}"));
+    editor.notify_of_step(format!("{count} from {path}{frame_hint}{size_note}{notes}"));
 }
 
 /// Reports the size of a mesh that is far from that of the scene: mostly, it was in other units.
-fn odd_size(scene: &Scene, parts: &[Part]) -> String {
+fn size_note(scene: &Scene, parts: &[Part]) -> String {
     let size = |(low, high): (DVec3, DVec3)| (high - low).max_element();
     let parts = around(parts.iter().filter_map(|part| part.triangles.bounds()));
     let sizes = parts.map(size).zip(scene.objects_bounds().map(size));
-    let is_odd = |(own, all): &(f64, f64)| own * ODD < *all || *own > all * ODD;
+    let is_odd = |(parts_size, scene_size): &(f64, f64)| {
+        parts_size * ODD_SIZE_FACTOR < *scene_size || *parts_size > scene_size * ODD_SIZE_FACTOR
+    };
     let rounded = |size: f64| format!("{size:.2e}").parse::<f64>().unwrap_or(size);
-    sizes.filter(is_odd).map_or(String::new(), |(own, all)| {
-        let (own, all) = (rounded(own), rounded(all));
-        format!("; they measure {own} units, the scene {all}")
-    })
+    sizes
+        .filter(is_odd)
+        .map_or(String::new(), |(parts_size, scene_size)| {
+            let (parts_size, scene_size) = (rounded(parts_size), rounded(scene_size));
+            format!("; they measure {parts_size} units, the scene {scene_size}")
+        })
 }

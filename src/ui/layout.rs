@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::scene::Aspect;
 
 /// Factors on the size of letters and buttons: smaller ones are unreadable, larger ones leave no room for the picture.
-const ZOOMS: RangeInclusive<f32> = 0.6..=3.0;
+const ZOOM_RANGE: RangeInclusive<f32> = 0.6..=3.0;
 
 /// Parts of the window that can be shown or hidden, and settings of the view.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -113,8 +113,8 @@ impl Default for Layout {
 /// Keeps letters and buttons at a usable size.
 pub fn keep_readable(ctx: &Context) {
     let zoom = ctx.zoom_factor();
-    let kept = zoom.clamp(*ZOOMS.start(), *ZOOMS.end());
-    if kept != zoom {
-        ctx.set_zoom_factor(kept);
+    let clamped = zoom.clamp(*ZOOM_RANGE.start(), *ZOOM_RANGE.end());
+    if clamped != zoom {
+        ctx.set_zoom_factor(clamped);
     }
 }

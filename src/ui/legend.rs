@@ -11,18 +11,20 @@ use crate::trace::heat;
 /// Width and height of the strip in points.
 const STRIP: (f32, f32) = (192.0, 10.0);
 /// Height of the text below, in points.
-const WORDS: f32 = 16.0;
+const TEXT_HEIGHT: f32 = 16.0;
 /// Number of columns that the strip is drawn with.
 const COLUMNS: u32 = 96;
 /// Counts that are labelled, from one end of the strip to the other.
-const MARKS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+const LABELLED_COUNTS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
 /// Draws the description of a view over the lower right corner of the picture.
 pub fn show_words(ui: &Ui, picture: Rect, words: &str) {
     let font = TextStyle::Small.resolve(ui.style());
-    let widest = (picture.width() - 4.0 * GRID).max(0.0);
+    let max_width = (picture.width() - 4.0 * GRID).max(0.0);
     let color = palette(ui.ctx()).text;
-    let words = ui.painter().layout(words.to_owned(), font, color, widest);
+    let words = ui
+        .painter()
+        .layout(words.to_owned(), font, color, max_width);
     let (painter, frame) = frame(ui, picture, words.size() + vec2(GRID, GRID / 2.0) * 2.0);
     painter.galley(frame.min + vec2(GRID, GRID / 2.0), words, color);
 }
@@ -41,15 +43,15 @@ fn frame(ui: &Ui, picture: Rect, size: Vec2) -> (Painter, Rect) {
 /// Draws the scale over the lower right corner of the picture.
 pub fn show(ui: &Ui, picture: Rect) {
     let colors = palette(ui.ctx());
-    let size = vec2(STRIP.0, STRIP.1 + WORDS) + vec2(3.0, 1.0) * 2.0 * GRID;
+    let size = vec2(STRIP.0, STRIP.1 + TEXT_HEIGHT) + vec2(3.0, 1.0) * 2.0 * GRID;
     let (painter, frame) = frame(ui, picture, size);
     let strip = Rect::from_min_size(frame.min + vec2(3.0 * GRID, GRID), STRIP.into());
-    painter.add(colored(strip));
+    painter.add(heat_strip(strip));
     let font = TextStyle::Small.resolve(ui.style());
-    for (count, place) in MARKS.into_iter().zip(0_u8..) {
-        let along = f32::from(place) / (MARKS.len() - 1) as f32;
+    for (count, index) in LABELLED_COUNTS.into_iter().zip(0_u8..) {
+        let fraction = f32::from(index) / (LABELLED_COUNTS.len() - 1) as f32;
         let at = pos2(
-            strip.left() + along * strip.width(),
+            strip.left() + fraction * strip.width(),
             strip.bottom() + GRID / 2.0,
         );
         let words = match count {
@@ -61,13 +63,13 @@ pub fn show(ui: &Ui, picture: Rect) {
 }
 
 /// Returns the strip, with a logarithmic scale like that of the picture.
-fn colored(strip: Rect) -> Shape {
+fn heat_strip(strip: Rect) -> Shape {
     let mut mesh = Mesh::default();
-    let [first, .., last] = MARKS;
+    let [first, .., last] = LABELLED_COUNTS;
     for column in 0..COLUMNS {
-        let along = f64::from(column) / f64::from(COLUMNS - 1);
-        let [red, green, blue] =
-            heat::<f64>(first * (last / first).powf(along)).map(|channel| (channel * 255.0) as u8);
+        let fraction = f64::from(column) / f64::from(COLUMNS - 1);
+        let [red, green, blue] = heat::<f64>(first * (last / first).powf(fraction))
+            .map(|channel| (channel * 255.0) as u8);
         let width = strip.width() / COLUMNS as f32;
         let left = strip.left() + column as f32 * width;
         let rect = Rect::from_x_y_ranges(left..=left + width, strip.y_range());

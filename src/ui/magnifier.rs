@@ -3,7 +3,7 @@
 use egui::{Pos2, Rect, Vec2, vec2};
 
 /// Greatest side of a picture pixel, in screen pixels.
-const LARGEST: u32 = 32;
+const MAX_FACTOR: u32 = 32;
 
 /// Magnification and position of a still picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Magnifier {
 
 impl Magnifier {
     /// Returns where to draw a picture of `size` pixels, which as a whole would fill `fitting`.
-    pub fn place(&self, fitting: Rect, size: (usize, usize), pixels_per_point: f32) -> Rect {
+    pub fn picture_rect(&self, fitting: Rect, size: (usize, usize), pixels_per_point: f32) -> Rect {
         if self.factor == 0 {
             return fitting;
         }
@@ -28,16 +28,16 @@ impl Magnifier {
     }
 
     /// Doubles or halves the magnification around `at`. When it shrinks to fit the window, the whole picture is shown.
-    pub fn turn(
+    pub fn zoom_step(
         &mut self,
         up: bool,
         at: Pos2,
         (fitting, size, pixels_per_point): (Rect, (usize, usize), f32),
     ) {
-        let before = self.place(fitting, size, pixels_per_point);
-        let under = (at - before.min) / before.size();
+        let before = self.picture_rect(fitting, size, pixels_per_point);
+        let anchor = (at - before.min) / before.size();
         let shown = before.width() * pixels_per_point / size.0.max(1) as f32;
-        if up && shown >= LARGEST as f32 {
+        if up && shown >= MAX_FACTOR as f32 {
             return;
         }
         self.factor = if up {
@@ -46,7 +46,7 @@ impl Magnifier {
             } else {
                 self.factor * 2
             };
-            next.min(LARGEST)
+            next.min(MAX_FACTOR)
         } else {
             self.factor / 2
         };
@@ -55,16 +55,16 @@ impl Magnifier {
             *self = Self::default();
             return;
         }
-        let after = self.place(fitting, size, pixels_per_point);
-        let moved = at - (after.min + under * after.size());
+        let after = self.picture_rect(fitting, size, pixels_per_point);
+        let moved = at - (after.min + anchor * after.size());
         self.pan(moved, after);
     }
 
-    /// Moves the picture, which is drawn to `place`.
-    pub fn pan(&mut self, by: Vec2, place: Rect) {
+    /// Moves the picture, which is drawn to `rect`.
+    pub fn pan(&mut self, by: Vec2, rect: Rect) {
         if self.factor > 0 {
             let half = Vec2::splat(0.5);
-            self.middle = (self.middle - by / place.size()).clamp(-half, half);
+            self.middle = (self.middle - by / rect.size()).clamp(-half, half);
         }
     }
 }
@@ -79,20 +79,20 @@ mod tests {
         let fitting = Rect::from_min_size(pos2(100.0, 50.0), vec2(500.0, 400.0));
         let (size, scale) = ((1000, 800), 1.0);
         let mut magnifier = Magnifier::default();
-        assert_eq!(magnifier.place(fitting, size, scale), fitting);
+        assert_eq!(magnifier.picture_rect(fitting, size, scale), fitting);
         let at = pos2(220.0, 170.0);
         let pixel = |magnifier: &Magnifier| {
-            let place = magnifier.place(fitting, size, scale);
+            let place = magnifier.picture_rect(fitting, size, scale);
             (at - place.min) / place.size() * vec2(1000.0, 800.0)
         };
         let before = pixel(&magnifier);
         for factor in [1, 2, 4, 8, 16, 32, 32] {
-            magnifier.turn(true, at, (fitting, size, scale));
+            magnifier.zoom_step(true, at, (fitting, size, scale));
             assert_eq!(magnifier.factor, factor);
             assert!((pixel(&magnifier) - before).length() < 2.0);
         }
         for factor in [16, 8, 4, 2, 1, 0] {
-            magnifier.turn(false, at, (fitting, size, scale));
+            magnifier.zoom_step(false, at, (fitting, size, scale));
             assert_eq!(magnifier.factor, factor);
         }
         assert_eq!(magnifier, Magnifier::default());
@@ -102,9 +102,9 @@ mod tests {
     fn a_small_picture_is_enlarged_from_what_is_seen() {
         let fitting = Rect::from_min_size(pos2(0.0, 0.0), vec2(640.0, 640.0));
         let mut magnifier = Magnifier::default();
-        magnifier.turn(true, pos2(9.0, 9.0), (fitting, (64, 64), 1.0));
+        magnifier.zoom_step(true, pos2(9.0, 9.0), (fitting, (64, 64), 1.0));
         assert_eq!(magnifier.factor, 16, "ten times as large is all of it");
-        magnifier.turn(false, pos2(9.0, 9.0), (fitting, (64, 64), 1.0));
+        magnifier.zoom_step(false, pos2(9.0, 9.0), (fitting, (64, 64), 1.0));
         assert_eq!(magnifier.factor, 0);
     }
 }

@@ -9,12 +9,12 @@ use super::add::add_menu;
 use super::commands::{Command, Next, Zoom};
 use super::dialogs::Ask;
 use super::examples::Examples;
-use super::flying::{FASTEST, SLOWEST};
+use super::flying::{MAX_FACTOR, MIN_FACTOR};
 use super::hint::Hinted as _;
 use super::icons;
 use super::layout::{Below, Layout, WindowPart};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
-use super::number::{Field, lone};
+use super::number::{Field, drag_unlabelled};
 use super::obstacles::is_enabled;
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
@@ -169,16 +169,16 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
                 hint: "The wheel changes it while the camera flies or looks around",
                 unit: "×",
                 default: 1.0,
-                range: SLOWEST..=FASTEST,
+                range: MIN_FACTOR..=MAX_FACTOR,
                 speed: Some(0.02),
             };
-            lone(ui, &field, &mut layout.fly_speed);
+            drag_unlabelled(ui, &field, &mut layout.fly_speed);
         });
     ui.menu_button("Text and buttons", |ui| {
         for (text, zoom) in [
             ("Larger", Zoom::In),
             ("Smaller", Zoom::Out),
-            ("Default size", Zoom::Usual),
+            ("Default size", Zoom::Default),
         ] {
             entry(ui, text, Command::Zoom(zoom), out);
         }

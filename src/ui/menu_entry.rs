@@ -2,7 +2,7 @@
 
 use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
-use super::commands::{Command, key_of};
+use super::commands::{Command, first_key};
 use super::icons;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
@@ -44,7 +44,7 @@ fn add(
     command: Command,
     out: &mut UiRequests,
 ) -> bool {
-    let key = key_of(ui, &command).unwrap_or_default();
+    let key = first_key(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
     let entry = ui.add_enabled(obstacle.is_none(), button);
     let entry = entry.accessible_name(text);
@@ -61,7 +61,7 @@ fn add(
 
 /// Adds a menu entry that can be on or off, with a tick in front if it is on.
 pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Option<&Command>) -> Response {
-    let key = command.and_then(|command| key_of(ui, command));
+    let key = command.and_then(|command| first_key(ui, command));
     let tick = icons::text(icons::CHECK);
     let tick = if is_on {
         tick

@@ -127,4 +127,4 @@ pub use flight_keys::FLIGHT;
 pub use lab::drawn;
 pub use setup::Setup;
 pub use start::StartStats;
-pub use window::{NoWindow, run, time_start};
+pub use window::{WindowError, run, time_start};

@@ -10,20 +10,20 @@ use glam::DVec3;
 
 use super::arithmetic::calculate;
 use super::hint::Hinted as _;
-use super::step_size::{USUAL, step_size};
+use super::step_size::{MAX_STEP, step_size};
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::ui::commands::take_escape;
 use crate::words::quoted;
 
 /// Characters that fit into one of three fields in a row.
-const NARROW: usize = 7;
+const NARROW_CHARS: usize = 7;
 /// The lower end of a range, if below this, only means that numbers must be above 0.
-const SMALL: f64 = 0.5;
+const POSITIVE_ONLY_BELOW: f64 = 0.5;
 /// Characters for the ends of a range, in messages.
-const ENDS: usize = 9;
+const RANGE_END_CHARS: usize = 9;
 /// Characters that fit into a field with a row of its own.
-const WIDE: usize = 16;
+const WIDE_CHARS: usize = 16;
 
 /// The range and the description of a number.
 #[derive(Clone, Debug)]
@@ -50,7 +50,7 @@ struct LastDrag {
     frame: u64,
     /// Value before the drag.
     start: f64,
-    stage: DragStep,
+    step: DragStep,
 }
 
 /// The state of a number's drag in this frame.
@@ -59,9 +59,9 @@ pub enum DragStep {
     /// The drag begins in this frame.
     Begins,
     /// The drag goes on.
-    GoesOn,
+    Continues,
     /// The drag was cancelled: its effect is to be undone.
-    IsGivenUp,
+    Cancelled,
 }
 
 fn last_drag_id() -> Id {
@@ -69,61 +69,61 @@ fn last_drag_id() -> Id {
 }
 
 /// Notes whether a number is dragged. Returns the value before the drag if Escape, which ends it in egui, cancels it.
-fn given_up(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
+fn track_drag(ui: &Ui, response: &Response, value: f64) -> Option<f64> {
     let frame = ui.cumulative_frame_nr();
     let last = ui.data(|data| data.get_temp::<LastDrag>(last_drag_id()));
     // egui may lay out a frame twice.
-    let is_own = |last: &LastDrag| {
+    let is_this_number = |last: &LastDrag| {
         last.number == response.id && (last.frame..=last.frame + 1).contains(&frame)
     };
-    let last = last.filter(is_own);
-    let is_let_go = !response.dragged() && last.is_some();
-    let is_given_up = is_let_go && take_escape(ui);
+    let last = last.filter(is_this_number);
+    let was_released = !response.dragged() && last.is_some();
+    let is_cancelled = was_released && take_escape(ui);
     let start = last.map_or(value, |last| last.start);
-    if response.dragged() || is_given_up {
-        let stage = match last {
-            _ if is_given_up => DragStep::IsGivenUp,
+    if response.dragged() || is_cancelled {
+        let step = match last {
+            _ if is_cancelled => DragStep::Cancelled,
             None => DragStep::Begins,
-            Some(_) => DragStep::GoesOn,
+            Some(_) => DragStep::Continues,
         };
         let drag = LastDrag {
             number: response.id,
             frame,
             start,
-            stage,
+            step,
         };
         ui.data_mut(|data| data.insert_temp(last_drag_id(), drag));
     }
-    is_given_up.then_some(start)
+    is_cancelled.then_some(start)
 }
 
 /// Returns the state of the drag, if a number is dragged in this frame.
-pub fn dragged(ctx: &Context) -> Option<DragStep> {
+pub fn drag_step(ctx: &Context) -> Option<DragStep> {
     let last: LastDrag = ctx.data(|data| data.get_temp(last_drag_id()))?;
-    (last.frame == ctx.cumulative_frame_nr()).then_some(last.stage)
+    (last.frame == ctx.cumulative_frame_nr()).then_some(last.step)
 }
 
-fn refused_id() -> Id {
+fn refusal_id() -> Id {
     Id::unique("what was typed and not taken")
 }
 
 /// Notes why what was typed into a field is refused, once the focus leaves it.
-pub fn tell_refused(response: &Response, is_cancelled: bool, words: Option<String>) {
+pub fn note_refusal(response: &Response, is_cancelled: bool, words: Option<String>) {
     if let Some(words) = words.filter(|_| response.lost_focus() && !is_cancelled) {
         response
             .ctx
-            .data_mut(|data| data.insert_temp(refused_id(), words));
+            .data_mut(|data| data.insert_temp(refusal_id(), words));
     }
 }
 
 /// Takes the reason why what was typed last was refused.
-pub fn take_refused(ctx: &Context) -> Option<String> {
-    ctx.data_mut(|data| data.remove_temp(refused_id()))
+pub fn take_refusal(ctx: &Context) -> Option<String> {
+    ctx.data_mut(|data| data.remove_temp(refusal_id()))
 }
 
 /// Returns what is wrong with a text for a field: it is not a number, or it is out of range.
 fn refusal(field: &Field, text: &str) -> Option<String> {
-    match read(text) {
+    match parse_expression(text) {
         None if text.is_empty() => None,
         None if is_ambiguous(text) => {
             let (short, long) = (text.replace(',', "."), text.replace(',', ""));
@@ -143,12 +143,14 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
         return None;
     }
     let (name, least, most) = (field.name, *field.range.start(), *field.range.end());
-    Some(if number <= 0.0 && 0.0 < least && least < SMALL {
-        format!("{name} must be greater than 0")
-    } else {
-        let [least, most] = [least, most].map(|end| rounded(end, "", ENDS));
-        format!("{name} must be between {least} and {most}{}", field.unit)
-    })
+    Some(
+        if number <= 0.0 && 0.0 < least && least < POSITIVE_ONLY_BELOW {
+            format!("{name} must be greater than 0")
+        } else {
+            let [least, most] = [least, most].map(|end| rounded(end, "", RANGE_END_CHARS));
+            format!("{name} must be between {least} and {most}{}", field.unit)
+        },
+    )
 }
 
 /// Returns whether a comma stands before exactly three digits, which may be decimals or thousands.
@@ -156,19 +158,19 @@ fn is_ambiguous(text: &str) -> bool {
     let Some((before, after)) = text.split_once(',') else {
         return false;
     };
-    let whole = before.trim_start_matches(['-', '+']);
+    let integer_part = before.trim_start_matches(['-', '+']);
     let are_digits = |text: &str| text.bytes().all(|letter| letter.is_ascii_digit());
-    let is_group = (1..=3).contains(&whole.len()) && !whole.starts_with('0');
-    is_group && after.len() == 3 && are_digits(whole) && are_digits(after)
+    let is_thousands = (1..=3).contains(&integer_part.len()) && !integer_part.starts_with('0');
+    is_thousands && after.len() == 3 && are_digits(integer_part) && are_digits(after)
 }
 
 /// Parses a number or an arithmetic expression.
-fn read(text: &str) -> Option<f64> {
-    read_number(text).or_else(|| calculate(text, read_number))
+fn parse_expression(text: &str) -> Option<f64> {
+    parse_number(text).or_else(|| calculate(text, parse_number))
 }
 
 /// Parses a number, unless the text can be read as two different ones.
-pub fn read_number(text: &str) -> Option<f64> {
+pub fn parse_number(text: &str) -> Option<f64> {
     if is_ambiguous(text) {
         return None;
     }
@@ -229,7 +231,7 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
         axis,
     } = *number;
     // A number that is not a length gets its least step from its default.
-    let least = step_size(ui.ctx()).max((field.default.abs() * 1e-3).min(USUAL));
+    let least = step_size(ui.ctx()).max((field.default.abs() * 1e-3).min(MAX_STEP));
     let speed = (value.abs().max(size) * 0.01).max(least);
     let add = |ui: &mut Ui, widget: DragValue| {
         let widget = widget
@@ -251,59 +253,64 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
         });
         placed.inner
     };
-    let (response, is_confirmed) = enter(ui, (field, pasted), value, add);
+    let (response, is_confirmed) = edit_value(ui, (field, pasted), value, add);
     response.hint_beside(ui, field.hint);
     is_confirmed
 }
 
 /// Shows a draggable number in a bar, without a label.
-pub fn lone(ui: &mut Ui, field: &Field, value: &mut f64) {
+pub fn drag_unlabelled(ui: &mut Ui, field: &Field, value: &mut f64) {
     let add = |ui: &mut Ui, widget: DragValue| {
         let speed = field.speed.unwrap_or(1.0);
         let widget = ui.add(widget.speed(speed).suffix(field.unit));
         widget.accessible_name(field.name)
     };
-    enter(ui, (field, None), value, add).0.hint(field.hint);
+    edit_value(ui, (field, None), value, add).0.hint(field.hint);
 }
 
 /// Shows a number with `add`. Typed text counts when the field is left. Also returns whether Enter confirmed it.
-fn enter(
+fn edit_value(
     ui: &mut Ui,
     (field, pasted): (&Field, Option<&Cell<Option<DVec3>>>),
     value: &mut f64,
     add: impl FnOnce(&mut Ui, DragValue) -> Response,
 ) -> (Response, bool) {
     // Three in a row have less room each.
-    let most = if pasted.is_some() { NARROW } else { WIDE };
-    let shown = |value: f64| rounded(value, field.unit, most);
-    let (own, refused, is_as_shown) = (shown(*value), Cell::new(None), Cell::new(false));
+    let max_chars = if pasted.is_some() {
+        NARROW_CHARS
+    } else {
+        WIDE_CHARS
+    };
+    let format_value = |value: f64| rounded(value, field.unit, max_chars);
+    let (shown_text, refused, is_as_shown) =
+        (format_value(*value), Cell::new(None), Cell::new(false));
     let parser = |text: &str| {
         let text = text.trim();
         let text = text.strip_suffix(field.unit.trim()).unwrap_or(text);
-        if let (Some(pasted), Some(whole)) = (pasted, parse_vec3(text)) {
-            let parts = whole.to_array();
+        if let (Some(pasted), Some(vector)) = (pasted, parse_vec3(text)) {
+            let parts = vector.to_array();
             refused.set(parts.iter().find_map(|part| out_of_range(field, *part)));
             let is_within = parts.iter().all(|part| field.range.contains(part));
-            pasted.set(is_within.then_some(whole));
-            return is_within.then_some(whole.x);
+            pasted.set(is_within.then_some(vector));
+            return is_within.then_some(vector.x);
         }
         let text = text.trim();
-        is_as_shown.set(text == own);
+        is_as_shown.set(text == shown_text);
         // Leaving a field unchanged is never an error.
-        refused.set(refusal(field, text).filter(|_| text != own));
+        refused.set(refusal(field, text).filter(|_| text != shown_text));
         // A number out of range is taken for a mistake, and not moved to the nearest end.
-        read(text).filter(|number| field.range.contains(number))
+        parse_expression(text).filter(|number| field.range.contains(number))
     };
     let mut edited = *value;
     let widget = DragValue::new(&mut edited)
         .range(field.range.clone())
         .clamp_existing_to_range(false)
         .update_while_editing(false)
-        .custom_formatter(|number, _| shown(number))
+        .custom_formatter(|number, _| format_value(number))
         .custom_parser(parser);
     let response = add(ui, widget);
-    if let Some(start) = given_up(ui, &response, *value) {
-        // For the scene, the whole step is undone as well, see [`dragged`]; other numbers are only restored here.
+    if let Some(start) = track_drag(ui, &response, *value) {
+        // For the scene, the whole step is undone as well, see [`drag_step`]; other numbers are only restored here.
         *value = start;
         return (response, false);
     }
@@ -316,7 +323,7 @@ fn enter(
     let is_confirmed = response.lost_focus()
         && refused.is_none()
         && ui.input(|input| input.key_pressed(Key::Enter));
-    tell_refused(&response, is_cancelled, refused);
+    note_refusal(&response, is_cancelled, refused);
     // If the text is the shown one, the value keeps its hidden digits.
     let is_as_shown = !response.dragged() && is_as_shown.get();
     if response.changed() && edited.is_finite() && !is_cancelled && !is_as_shown {
@@ -341,8 +348,8 @@ pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {
 }
 
 /// Formats a number with enough decimals to show the effect of a drag, but without a long tail of digits, in at most
-/// `most` characters.
-fn rounded(value: f64, unit: &str, most: usize) -> String {
+/// `max_chars` characters.
+fn rounded(value: f64, unit: &str, max_chars: usize) -> String {
     let decimals = match value.abs() {
         _ if unit == "°" => 2,
         size if size >= 100.0 => 2,
@@ -364,7 +371,7 @@ fn rounded(value: f64, unit: &str, most: usize) -> String {
             text.to_owned()
         }
     });
-    let mut fitting = plain.filter(|text| text.len() <= most);
+    let mut fitting = plain.filter(|text| text.len() <= max_chars);
     fitting.next().unwrap_or_else(|| format!("{value:.1e}"))
 }
 
@@ -375,12 +382,12 @@ mod tests {
     #[test]
     fn a_comma_that_may_be_either_is_not_taken() {
         for text in ["1,000", "-2,500", "12,345", "999,999"] {
-            assert_eq!(read(text), None, "{text}");
+            assert_eq!(parse_expression(text), None, "{text}");
         }
         let field = coordinate("x", "");
-        let told = refusal(&field, "1,000");
+        let message = refusal(&field, "1,000");
         assert_eq!(
-            told.as_deref(),
+            message.as_deref(),
             Some("“1,000” could mean 1.000 or 1000: write one of them")
         );
         for (text, number) in [
@@ -391,7 +398,7 @@ mod tests {
             ("1234,567", 1234.567),
             ("-0,5", -0.5),
         ] {
-            assert_eq!(read(text), Some(number), "{text}");
+            assert_eq!(parse_expression(text), Some(number), "{text}");
         }
     }
 
@@ -408,8 +415,8 @@ mod tests {
             (100.0, "100", "100"),
             (-0.000_1, "-1.0e-4", "-1.0e-4"),
         ] {
-            assert_eq!(rounded(value, "", NARROW), narrow);
-            assert_eq!(rounded(value, "", WIDE), wide);
+            assert_eq!(rounded(value, "", NARROW_CHARS), narrow);
+            assert_eq!(rounded(value, "", WIDE_CHARS), wide);
         }
     }
 }

@@ -22,7 +22,7 @@ pub fn toggle_visible(editor: &mut Editor) {
 }
 
 /// Returns the selected objects or, if only a triangle is selected, all triangles connected to it by shared corners.
-pub fn joined(editor: &Editor) -> Vec<usize> {
+pub fn objects_to_join(editor: &Editor) -> Vec<usize> {
     let selected = editor.selection().places(ItemKind::Object);
     match selected[..] {
         [triangle] => editor.scene().connected_triangles(triangle),
@@ -64,13 +64,13 @@ pub fn duplicate_all(editor: &mut Editor) {
     if editor.changes(Action::Edit(Edit::Each(edits.collect(), label))) {
         // Each copy follows its original, so that those after it have moved on by one more.
         let copies = items.iter().zip(1..);
-        let copies = copies.map(|(item, further)| Item::pack(item.index + further));
+        let copies = copies.map(|(item, offset)| Item::pack(item.index + offset));
         editor.apply(Action::Select(Selection::all(copies)));
     }
 }
 
 /// Returns the edit that moves the selected item, or the selected items as a group, one step in its list.
-pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
+pub fn move_step(editor: &Editor, is_down: bool) -> Option<Edit> {
     let (scene, selection) = (editor.scene(), editor.selection());
     let item = selection.item()?;
     match item.kind {
@@ -80,15 +80,17 @@ pub fn step(editor: &Editor, is_down: bool) -> Option<Edit> {
         }
         kind => {
             let items = selection.of_kind(kind);
-            let places = || items.iter().map(|item| item.index);
+            let indices = || items.iter().map(|item| item.index);
             // Places to move to are counted without the moved items.
-            let to = if is_down {
-                let last = places().max().filter(|last| last + 1 < kind.count(scene))?;
+            let target = if is_down {
+                let last = indices()
+                    .max()
+                    .filter(|last| last + 1 < kind.count(scene))?;
                 last + 2 - items.len()
             } else {
-                places().min()?.checked_sub(1)?
+                indices().min()?.checked_sub(1)?
             };
-            Some(Edit::Move(items, to))
+            Some(Edit::Move(items, target))
         }
     }
 }

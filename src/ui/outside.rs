@@ -18,34 +18,34 @@ use crate::worker::Background;
 /// Subject of the messages about changes from outside.
 pub const OUTSIDE: &str = "Changed outside";
 /// Time between two checks of the open file.
-const RHYTHM: Duration = Duration::from_secs(1);
+const CHECK_INTERVAL: Duration = Duration::from_secs(1);
 /// Number of checks after a change: the other program may not have finished writing.
-const LOOKS: u32 = 3;
+const CHECKS_AFTER_CHANGE: u32 = 3;
 /// Most lines of differences that are shown.
-const MOST_LINES: usize = 8;
+const MAX_LINES: usize = 8;
 
 /// The state of the open file and of its mesh files at the last check.
 #[derive(Default)]
 pub struct Watch {
-    looked: Option<Instant>,
+    last_check: Option<Instant>,
     /// Number of checks left before the next guard is started.
-    left: u32,
+    remaining_checks: u32,
     /// The watched files, the open one last.
     watched: Vec<Watched>,
     /// Their marks at the last check.
-    marked: Vec<Marked>,
+    last_marks: Vec<Marked>,
     /// Thread that watches while nothing changes, since a resting window draws no frames.
     guard: Option<Guard>,
     /// Path of the open file and time of its last known change.
-    found: Option<(PathBuf, SystemTime)>,
+    last_modified: Option<(PathBuf, SystemTime)>,
     /// Why it could not be read. Reported only if the file is the same at the next check, since it may be half written.
     broken: Option<String>,
     /// File that was missing at the last check.
     missing: Option<PathBuf>,
     /// Objects at the last check, and their mesh files.
-    shown: Option<(List<Object>, Vec<WatchedMesh>)>,
+    checked_objects: Option<(List<Object>, Vec<WatchedMesh>)>,
     /// Marks of those files at the last check, and marks of the state that was last handed out to be read.
-    seen: HashMap<PathBuf, [Option<Marks>; 2]>,
+    mesh_marks: HashMap<PathBuf, [Option<Marks>; 2]>,
 }
 
 impl Watch {
@@ -55,44 +55,51 @@ impl Watch {
             self.guard = None;
             return false;
         };
-        self.note_meshes(editor);
+        self.update_meshes(editor);
         if self.watched.last().is_none_or(|(last, _)| last != path) {
             // Undo can bring back a mesh as it was read earlier, so what was read is compared too.
-            let meshes = self.shown.iter().flat_map(|(_, files)| files);
-            let meshes = meshes.map(|file| (file.full(), file.read));
+            let meshes = self.checked_objects.iter().flat_map(|(_, files)| files);
+            let meshes = meshes.map(|file| (file.full_path(), file.read));
             self.watched = meshes.chain([(path.to_owned(), None)]).collect();
         }
-        let has_news = match &mut self.guard {
+        let has_changed = match &mut self.guard {
             Some(guard) => guard.files != self.watched || guard.alarm.take().is_some(),
             None => false,
         };
-        if has_news {
-            (self.guard, self.left, self.looked) = (None, LOOKS, None);
+        if has_changed {
+            (self.guard, self.remaining_checks, self.last_check) =
+                (None, CHECKS_AFTER_CHANGE, None);
         }
         if self.guard.is_some() {
             return false;
         }
-        let is_due = self.looked.is_none_or(|looked| looked.elapsed() >= RHYTHM);
+        let is_due = self
+            .last_check
+            .is_none_or(|last| last.elapsed() >= CHECK_INTERVAL);
         if is_due {
-            self.looked = Some(Instant::now());
-            self.left = self.left.saturating_sub(1);
+            self.last_check = Some(Instant::now());
+            self.remaining_checks = self.remaining_checks.saturating_sub(1);
             let marked = self.watched.iter();
-            self.marked = marked
+            self.last_marks = marked
                 .map(|(file, read)| (marks_of_mesh(file), file.clone(), *read))
                 .collect();
-        } else if self.left == 0 {
-            self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.marked)));
+        } else if self.remaining_checks == 0 {
+            self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.last_marks)));
             return false;
         }
         // The guard is started in the frame after the last check.
-        let is_last = is_due && self.left == 0;
-        ctx.request_repaint_after(if is_last { RHYTHM / 10 } else { RHYTHM });
+        let is_last = is_due && self.remaining_checks == 0;
+        ctx.request_repaint_after(if is_last {
+            CHECK_INTERVAL / 10
+        } else {
+            CHECK_INTERVAL
+        });
         is_due
     }
 
     /// Keeps checking for a while: what was found may be incomplete, or different at the next check.
-    fn look_on(&mut self) {
-        self.left = LOOKS;
+    fn keep_checking(&mut self) {
+        self.remaining_checks = CHECKS_AFTER_CHANGE;
     }
 
     /// Reports the file as gone if it is missing in two checks in a row, since a program that rewrites it may delete it
@@ -102,12 +109,12 @@ impl Watch {
         let was_missing = self.missing.as_deref() == Some(path);
         self.missing = is_missing.then(|| path.to_owned());
         if is_missing != was_missing {
-            self.look_on();
+            self.keep_checking();
         }
         let is_gone = is_missing && was_missing;
         if is_gone && editor.own_file() != OwnFile::Gone {
             let path = path.display();
-            tell_lost(
+            report_lost(
                 editor,
                 OwnFile::Gone,
                 format!(
@@ -124,61 +131,61 @@ impl Watch {
     /// Returns the folders and paths of mesh files that were written since they were read and are the same in two
     /// checks in a row: in the first one, they may be half written.
     pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
-        self.note_meshes(editor);
-        let files = self.shown.iter().flat_map(|(_, files)| files);
-        let seen = &mut self.seen;
-        let mut is_moving = false;
+        self.update_meshes(editor);
+        let files = self.checked_objects.iter().flat_map(|(_, files)| files);
+        let mesh_marks = &mut self.mesh_marks;
+        let mut is_any_changing = false;
         let changed = files.filter(|file| {
-            let full = file.full();
-            let now = marks_of_mesh(&full);
-            let [found, asked] = seen.entry(full).or_default();
-            let is_still = std::mem::replace(found, now) == now;
-            is_moving |= !is_still;
+            let full_path = file.full_path();
+            let now = marks_of_mesh(&full_path);
+            let [last, requested] = mesh_marks.entry(full_path).or_default();
+            let is_unchanged = std::mem::replace(last, now) == now;
+            is_any_changing |= !is_unchanged;
             // A deleted file keeps its mesh in the window. A file that was broken in between may be as it was read.
-            let is_new = is_still && now.is_some() && now != asked.or(file.read);
-            if is_new {
-                *asked = now;
+            let must_read = is_unchanged && now.is_some() && now != requested.or(file.read);
+            if must_read {
+                *requested = now;
             }
-            is_new
+            must_read
         });
-        let places = changed.map(|file| (file.folder.clone(), file.path.clone()));
-        let places = places.collect();
-        if is_moving {
-            self.look_on();
+        let mesh_paths = changed.map(|file| (file.folder.clone(), file.path.clone()));
+        let mesh_paths = mesh_paths.collect();
+        if is_any_changing {
+            self.keep_checking();
         }
-        places
+        mesh_paths
     }
 
-    fn note_meshes(&mut self, editor: &Editor) {
+    fn update_meshes(&mut self, editor: &Editor) {
         let objects = &editor.scene().objects;
         let is_other = |(of, _): &(List<Object>, _)| !of.is_same(objects);
-        if self.shown.as_ref().is_none_or(is_other) {
+        if self.checked_objects.as_ref().is_none_or(is_other) {
             let files = editor.scene().mesh_files().into_iter();
             let files = files.map(|(folder, path, read)| WatchedMesh {
                 folder: folder.to_owned(),
                 path: path.to_owned(),
                 read,
             });
-            self.shown = Some((objects.clone(), files.collect()));
+            self.checked_objects = Some((objects.clone(), files.collect()));
             self.watched.clear();
         }
     }
 
     /// Returns whether the file was written since the last check, by its time on disk, so that it is not read every
     /// second just because it was touched or is unreadable.
-    pub fn is_news(&mut self, path: &Path) -> bool {
-        let found = time_of(path).map(|time| (path.to_owned(), time));
-        let is_news = found.is_none() || found != self.found;
-        self.found = found;
-        if is_news {
-            self.look_on();
+    pub fn is_changed(&mut self, path: &Path) -> bool {
+        let modified = time_of(path).map(|time| (path.to_owned(), time));
+        let is_changed = modified.is_none() || modified != self.last_modified;
+        self.last_modified = modified;
+        if is_changed {
+            self.keep_checking();
         }
-        is_news
+        is_changed
     }
 
-    /// Makes the next check count the file as news, because it was missing or unreachable.
-    pub fn look_again(&mut self) {
-        self.found = None;
+    /// Makes the next check count the file as changed, because it was missing or unreachable.
+    pub fn forget_modified(&mut self) {
+        self.last_modified = None;
     }
 
     /// Notes why the file could not be read.
@@ -193,14 +200,14 @@ impl Watch {
 }
 
 /// Reports why the content of the document now exists only in the window.
-pub fn tell_lost(editor: &mut Editor, own_file: OwnFile, why: String) {
+pub fn report_lost(editor: &mut Editor, own_file: OwnFile, why: String) {
     editor.begin(OUTSIDE);
     editor.report_error_in(OUTSIDE, why);
     editor.set_own_file(own_file);
 }
 
 /// Clears a report about the document's file.
-pub fn forget_lost(editor: &mut Editor) {
+pub fn clear_lost(editor: &mut Editor) {
     editor.begin(OUTSIDE);
     editor.set_own_file(OwnFile::Whole);
 }
@@ -219,7 +226,7 @@ type Watched = (PathBuf, Option<Marks>);
 type Marked = (Option<Marks>, PathBuf, Option<Marks>);
 
 impl WatchedMesh {
-    fn full(&self) -> PathBuf {
+    fn full_path(&self) -> PathBuf {
         self.folder.join(&self.path)
     }
 }
@@ -239,7 +246,7 @@ impl Guard {
         let files = files.collect();
         let alive = Arc::new(());
         let is_wanted = Arc::downgrade(&alive);
-        let is_there = move || {
+        let has_change = move || {
             let mut marked = marked.iter();
             is_wanted.strong_count() == 0
                 || marked.any(|(marks, file, _)| marks_of_mesh(file) != *marks)
@@ -248,28 +255,28 @@ impl Guard {
         let wake = move || ctx.request_repaint();
         Self {
             files,
-            alarm: Background::look_out("glint-watch", RHYTHM, is_there, wake),
+            alarm: Background::look_out("glint-watch", CHECK_INTERVAL, has_change, wake),
             _alive: alive,
         }
     }
 }
 
 /// The version of the file that another program has written, and how it differs.
-pub struct Theirs {
+pub struct ExternalVersion {
     /// What was read of the file.
     document: Result<(Document, Stamp), SceneError>,
     /// Stamp of the file if it cannot be read as a scene, to recognise the next change.
-    unread: Option<Stamp>,
+    unreadable_stamp: Option<Stamp>,
     lines: Vec<String>,
 }
 
-impl Theirs {
+impl ExternalVersion {
     /// Compares it with the document in the editor. If reading failed, it is read once more.
     pub fn new(editor: &Editor, mut document: Result<(Document, Stamp), SceneError>) -> Self {
-        let mut unread = None;
+        let mut unreadable_stamp = None;
         if let Some(path) = editor.path().filter(|_| document.is_err()) {
             // The stamp is taken first: whatever is written after that counts as a new change.
-            unread = Stamp::read(path);
+            unreadable_stamp = Stamp::read(path);
             document = Document::load_stamped(path);
         }
         let lines = match &document {
@@ -278,19 +285,19 @@ impl Theirs {
         };
         Self {
             document,
-            unread,
+            unreadable_stamp,
             lines,
         }
     }
 
     /// Keeps the scene of the editor; the next save replaces the other version.
-    pub fn leave(self, editor: &mut Editor) {
+    pub fn reject(self, editor: &mut Editor) {
         editor.begin(OUTSIDE);
-        editor.keep_mine(self.document.ok(), self.unread);
+        editor.keep_mine(self.document.ok(), self.unreadable_stamp);
     }
 
     /// Replaces the scene of the editor by this version, if it is readable.
-    pub fn take(self, editor: &mut Editor) {
+    pub fn accept(self, editor: &mut Editor) {
         if let Ok(theirs) = self.document {
             editor.begin(OUTSIDE);
             editor.take_theirs(theirs);
@@ -330,7 +337,7 @@ impl Theirs {
             Ok(_) => "You have unsaved changes. In the file, compared with yours:",
             Err(_) => "The file can no longer be read:",
         });
-        for line in self.lines.iter().take(MOST_LINES) {
+        for line in self.lines.iter().take(MAX_LINES) {
             // The first line is a sentence; the lines below must keep their columns.
             let (sentence, excerpt) = line.split_once('\n').unwrap_or((line, ""));
             ui.weak(sentence);

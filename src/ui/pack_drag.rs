@@ -14,7 +14,7 @@ pub fn dropped_pack(response: &Response) -> Option<Item> {
 }
 
 /// Returns the edit that gives a color pack to an object or a light's marker; to the whole selection if it is in it.
-pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
+pub fn assign_pack_edit(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
     let scene = editor.shown();
     let name = pack.name(scene)?;
     let selected = editor.selection();

@@ -10,7 +10,7 @@ use super::app::App;
 use super::commands::Command;
 use super::layout::Below;
 use super::requests::UiRequests;
-use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, TRACKS, WIDE, palette};
+use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, TRACKS, WIDE_WINDOW, palette};
 use super::timeline::clock;
 use super::tools::label;
 use super::viewport::{Place, badge, describe, fit};
@@ -19,7 +19,7 @@ use crate::editor::Mode;
 use crate::scene::Aspect;
 
 /// Width of the frame around the picture during a recording, in points.
-const FRAME: f32 = 3.0;
+const RECORDING_FRAME: f32 = 3.0;
 
 impl App {
     /// Shows the panels in the order of the Tab key: outliner, picture, inspector, timeline.
@@ -49,8 +49,8 @@ impl App {
     fn show_upper(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
         if self.layout.outliner {
             Panel::left(("outliner", is_narrow(ui)))
-                .frame(side(ui))
-                .default_size(usual(ui, OUTLINER))
+                .frame(side_frame(ui))
+                .default_size(default_width(ui, OUTLINER))
                 .size_range(OUTLINER.0..=420.0)
                 .show(ui, |ui| {
                     let keys_are_free = !self.keys_are_taken;
@@ -59,16 +59,16 @@ impl App {
         }
         let mut middle = ui.available_rect_before_wrap();
         if self.layout.inspector {
-            let usual = usual(ui, INSPECTOR);
-            let size = size_of(ui, ("inspector", is_narrow(ui)));
-            middle.max.x -= size.map_or(usual, |size| size.x);
+            let default_width = default_width(ui, INSPECTOR);
+            let size = last_size(ui, ("inspector", is_narrow(ui)));
+            middle.max.x -= size.map_or(default_width, |size| size.x);
         }
         let mut between = ui.new_child(UiBuilder::new().max_rect(middle));
         let picture = self.show_middle(&mut between, out);
         if self.layout.inspector {
             Panel::right(("inspector", is_narrow(ui)))
-                .frame(side(ui))
-                .default_size(usual(ui, INSPECTOR))
+                .frame(side_frame(ui))
+                .default_size(default_width(ui, INSPECTOR))
                 .size_range(INSPECTOR.0..=480.0)
                 .show(ui, |ui| {
                     inspector::show(ui, &self.editor, &mut self.quality, out);
@@ -78,9 +78,9 @@ impl App {
     }
 
     fn show_middle(&mut self, ui: &mut Ui, out: &mut UiRequests) -> (Place, egui::Response) {
-        let behind = Frame::new().fill(palette(ui.ctx()).window);
+        let background = Frame::new().fill(palette(ui.ctx()).window);
         CentralPanel::no_frame()
-            .frame(behind)
+            .frame(background)
             .show(ui, |ui| self.show_picture(ui, out))
             .inner
     }
@@ -104,16 +104,17 @@ impl App {
 
     /// Returns the height in the last frame of the status line with the timeline or the lab.
     fn height_below(&self, ui: &Ui) -> f32 {
-        let height = |size: Option<Vec2>, usual| size.map_or(usual, |size| size.y);
+        let height =
+            |size: Option<Vec2>, default_height| size.map_or(default_height, |size| size.y);
         let below = match self.layout.below {
             Below::Nothing => 0.0,
             Below::Timeline => {
-                let (name, usual) = self.timeline_panel();
-                height(size_of(ui, name), usual)
+                let (name, default_height) = self.timeline_panel();
+                height(last_size(ui, name), default_height)
             }
-            Below::Lab => height(size_of(ui, "lab"), LAB),
+            Below::Lab => height(last_size(ui, "lab"), LAB),
         };
-        height(size_of(ui, "status"), ROW) + below
+        height(last_size(ui, "status"), ROW) + below
     }
 
     /// Shows the status line, the lab and the timeline, from bottom to top.
@@ -123,10 +124,10 @@ impl App {
             let live = frame.map_or(String::new(), |frame| describe(frame, self.editor.shown()));
             let text = self.lab.describe().unwrap_or(live);
             let picture = (&*text, frame.map(|frame| frame.revision));
-            let kept = self.autosave.kept_since();
+            let saved_at = self.autosave.saved_since();
             let reading = self.files.describe_reading();
             let note = reading.or_else(|| self.exports.describe(&self.pictures));
-            let note = note.or_else(|| kept.map(status::autosaved));
+            let note = note.or_else(|| saved_at.map(status::autosaved));
             let check = (&self.check, &**self.editor.shown());
             status::show(
                 ui,
@@ -138,26 +139,26 @@ impl App {
             );
         });
         if self.layout.below == Below::Lab {
-            let panel = Panel::bottom("lab").frame(side(ui)).resizable(true);
+            let panel = Panel::bottom("lab").frame(side_frame(ui)).resizable(true);
             let shown = panel
                 .default_size(LAB)
                 .size_range(160.0..=600.0)
                 .show(ui, |ui| self.lab.show(ui, &self.editor, out));
-            if let Some(wish) = shown.inner {
-                self.pictures.fulfil(wish);
+            if let Some(request) = shown.inner {
+                self.pictures.handle_lab_request(request);
             }
         }
         if self.layout.below == Below::Timeline {
             let per_second = self.pictures.per_second();
-            let (name, usual) = self.timeline_panel();
+            let (name, default_height) = self.timeline_panel();
             let panel = Panel::bottom(name);
             let panel = if self.editor.scene().animation.is_still() {
-                panel.exact_size(usual)
+                panel.exact_size(default_height)
             } else {
                 let panel = panel.resizable(true);
-                panel.default_size(usual).size_range(64.0..=600.0)
+                panel.default_size(default_height).size_range(64.0..=600.0)
             };
-            panel.frame(side(ui)).show(ui, |ui| {
+            panel.frame(side_frame(ui)).show(ui, |ui| {
                 self.timeline
                     .show(ui, &self.editor, &self.thumbs, per_second, out);
             });
@@ -193,7 +194,7 @@ impl App {
         }
         let scene = self.editor.scene();
         if scene.objects.is_empty() && scene.animation.is_still() {
-            hint_at_beginning(ui, place);
+            show_empty_scene_hint(ui, place);
         }
         if !is_still && self.layout.flight {
             self.overlay.show(ui, &self.editor, place.rect, out);
@@ -220,7 +221,7 @@ impl App {
         } else {
             let speed = &mut self.layout.fly_speed;
             let wheel = self.flying.wheel(ui, &response, speed);
-            if self.flying.is_speed_told(ui.ctx()) {
+            if self.flying.is_speed_shown(ui.ctx()) {
                 let painter = ui.painter().with_clip_rect(place.rect);
                 let at = ui.input(|input| input.pointer.latest_pos());
                 let words = format!("Flying speed {:.2}×", self.layout.fly_speed);
@@ -248,21 +249,21 @@ impl App {
 
 /// Whether the window is narrow. Panels at the sides have separate widths then, which are remembered separately.
 fn is_narrow(ui: &Ui) -> bool {
-    ui.content_rect().width() < WIDE
+    ui.content_rect().width() < WIDE_WINDOW
 }
 
 /// Returns the width of a panel when first shown: in a narrow window, the least one.
-fn usual(ui: &Ui, (least, wide): (f32, f32)) -> f32 {
+fn default_width(ui: &Ui, (least, wide): (f32, f32)) -> f32 {
     if is_narrow(ui) { least } else { wide }
 }
 
 /// Returns the frame of the panels at the sides.
-fn side(ui: &Ui) -> Frame {
+fn side_frame(ui: &Ui) -> Frame {
     Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(GRID as i8, 0))
 }
 
 /// Returns the size of a panel in the last frame.
-fn size_of(ui: &Ui, panel: impl AsIdSalt) -> Option<Vec2> {
+fn last_size(ui: &Ui, panel: impl AsIdSalt) -> Option<Vec2> {
     let state = PanelState::load(ui.ctx(), ui.scope_id().with_salt(IdSalt::new(panel)));
     state.map(|state| state.size())
 }
@@ -271,7 +272,7 @@ fn size_of(ui: &Ui, panel: impl AsIdSalt) -> Option<Vec2> {
 fn show_recording(ui: &Ui, place: Place, seconds: f64) {
     let colors = palette(ui.ctx());
     let painter = ui.painter().with_clip_rect(place.rect.expand(GRID));
-    let frame = Stroke::new(FRAME, colors.accent);
+    let frame = Stroke::new(RECORDING_FRAME, colors.accent);
     painter.rect_stroke(place.rect, 0, frame, StrokeKind::Outside);
     label(
         &painter,
@@ -281,7 +282,7 @@ fn show_recording(ui: &Ui, place: Place, seconds: f64) {
 }
 
 /// Shows how to begin in an empty scene.
-fn hint_at_beginning(ui: &Ui, place: Place) {
+fn show_empty_scene_hint(ui: &Ui, place: Place) {
     let words = "The scene is empty.\n\nAdd a shape from the Add menu, drop a mesh or a scene file here,\nor start with Open example in the File menu.";
     let font = TextStyle::Body.resolve(ui.style());
     let color = palette(ui.ctx()).on_picture;

@@ -19,15 +19,15 @@ use crate::worker::{
 };
 
 /// Time over which pictures per second are counted.
-const RHYTHM: Duration = Duration::from_secs(1);
+const RATE_PERIOD: Duration = Duration::from_secs(1);
 
 /// The times at which pictures of new revisions came on the screen.
 #[derive(Debug, Default)]
-struct Rhythm {
+struct FrameRate {
     shown: VecDeque<(Instant, u64)>,
 }
 
-impl Rhythm {
+impl FrameRate {
     /// Notes a picture; only the first one of each revision counts.
     fn note(&mut self, revision: u64, now: Instant) {
         if self.shown.back().is_none_or(|(_, last)| *last != revision) {
@@ -40,7 +40,7 @@ impl Rhythm {
 
     /// Pictures per second over the last second.
     fn per_second(&self, now: Instant) -> f64 {
-        let recent = self.shown.iter().filter(|(at, _)| now - *at <= RHYTHM);
+        let recent = self.shown.iter().filter(|(at, _)| now - *at <= RATE_PERIOD);
         let times: Vec<Instant> = recent.map(|(at, _)| *at).collect();
         match times[..] {
             [first, .., last] if last > first => {
@@ -59,7 +59,7 @@ pub struct Pictures {
     worker: Worker,
     /// The pictures on the graphics card.
     pub screen: Display,
-    rhythm: Rhythm,
+    frame_rate: FrameRate,
     submitted: Option<(u64, (u32, u32), Pace, Aspect)>,
     /// Aspect and scene of the last picture in an aspect, and the scene that was derived from it.
     aspect: Option<(Aspect, Arc<Scene>, Arc<Scene>)>,
@@ -67,7 +67,7 @@ pub struct Pictures {
     /// Part of the still picture to be traced; `None` for all of it.
     pub region: Option<Region>,
     /// Document and still picture size that `region` belongs to.
-    region_of: (u64, (u32, u32)),
+    region_owner: (u64, (u32, u32)),
     /// Take for which a survey was requested.
     surveyed: Option<Arc<Take>>,
 }
@@ -83,12 +83,12 @@ impl Pictures {
         Ok(Self {
             worker,
             screen: Display::default(),
-            rhythm: Rhythm::default(),
+            frame_rate: FrameRate::default(),
             submitted: None,
             aspect: None,
             still_requested: None,
             region: None,
-            region_of: (0, (0, 0)),
+            region_owner: (0, (0, 0)),
             surveyed: None,
         })
     }
@@ -97,7 +97,7 @@ impl Pictures {
     pub fn poll(&mut self, ctx: &Context, editor: &mut Editor) -> bool {
         while let Some(frame) = self.worker.take_frame() {
             if !frame.is_still {
-                self.rhythm.note(frame.revision, Instant::now());
+                self.frame_rate.note(frame.revision, Instant::now());
             }
             self.screen.take(ctx, frame);
         }
@@ -125,7 +125,7 @@ impl Pictures {
 
     /// Number of different pictures shown per second, over the last second.
     pub fn per_second(&self) -> f64 {
-        self.rhythm.per_second(Instant::now())
+        self.frame_rate.per_second(Instant::now())
     }
 
     /// Asks the questions of panels that take rays to answer, and what a recorded flight has seen.
@@ -152,7 +152,7 @@ impl Pictures {
     }
 
     /// Returns the picture on screen if it is finished, has no missing part and shows all of the light.
-    pub fn whole(&self, editor: &Editor) -> Option<&Frame> {
+    pub fn complete_frame(&self, editor: &Editor) -> Option<&Frame> {
         let is_whole = |frame: &&Frame| frame.step == 1 && frame.region.is_none();
         let submitted = self.submitted.as_ref();
         let is_part = submitted.is_some_and(|(.., aspect)| *aspect != Aspect::All);
@@ -161,8 +161,8 @@ impl Pictures {
     }
 
     /// Passes a request of the lab on to the render thread.
-    pub fn fulfil(&self, wish: LabRequest) {
-        match wish {
+    pub fn handle_lab_request(&self, request: LabRequest) {
+        match request {
             LabRequest::Measure(study) => self.worker.measure(*study),
             LabRequest::Stop => self.worker.stop_measuring(),
         }
@@ -229,15 +229,15 @@ impl Pictures {
 
     /// Returns the scene whose picture shows an aspect of `scene`. If only the camera has moved, it shares its lists
     /// with the one before, so that nothing is planned again.
-    fn in_aspect(&mut self, aspect: Aspect, scene: &Arc<Scene>) -> Arc<Scene> {
+    fn scene_in_aspect(&mut self, aspect: Aspect, scene: &Arc<Scene>) -> Arc<Scene> {
         if aspect == Aspect::All {
             return Arc::clone(scene);
         }
-        let known = self
+        let cached = self
             .aspect
             .take()
             .filter(|(of, from, _)| *of == aspect && from.has_same_things(scene));
-        let shown = match known {
+        let shown = match cached {
             Some((.., before)) => Arc::new(Scene {
                 camera: scene.camera.clone(),
                 light_visualization: scene.light_visualization,
@@ -255,9 +255,9 @@ impl Pictures {
     /// the light.
     pub fn submit(&mut self, editor: &Editor, pixels: (u32, u32), aspect: Aspect) {
         let revision = editor.shown_revision();
-        let region_of = (editor.documents(), still_size(editor));
-        if self.region_of != region_of {
-            (self.region, self.region_of) = (None, region_of);
+        let region_owner = (editor.documents(), still_size(editor));
+        if self.region_owner != region_owner {
+            (self.region, self.region_owner) = (None, region_owner);
         }
         if editor.mode == Mode::HighRes {
             let wanted = (revision, still_size(editor), self.region);
@@ -284,7 +284,7 @@ impl Pictures {
             return;
         }
         self.submitted = Some((revision, size, pace, aspect));
-        let scene = self.in_aspect(aspect, editor.shown());
+        let scene = self.scene_in_aspect(aspect, editor.shown());
         self.worker.submit(LiveJob {
             revision,
             scene,
@@ -312,13 +312,13 @@ mod tests {
 
     #[test]
     fn the_rhythm_counts_each_revision_once() {
-        let (mut rhythm, start) = (Rhythm::default(), Instant::now());
+        let (mut frame_rate, start) = (FrameRate::default(), Instant::now());
         let at = |millis: u64| start + Duration::from_millis(millis);
         for n in 0..30_u64 {
-            rhythm.note(n, at(n * 50));
-            rhythm.note(n, at(n * 50 + 20));
+            frame_rate.note(n, at(n * 50));
+            frame_rate.note(n, at(n * 50 + 20));
         }
-        assert!((rhythm.per_second(at(1450)) - 20.0).abs() < 1e-9);
-        assert_eq!(rhythm.per_second(at(9000)), 0.0);
+        assert!((frame_rate.per_second(at(1450)) - 20.0).abs() < 1e-9);
+        assert_eq!(frame_rate.per_second(at(9000)), 0.0);
     }
 }

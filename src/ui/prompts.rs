@@ -29,17 +29,17 @@ pub enum Reply {
     Cancel,
 }
 
-/// Asks whether to save unsaved changes; `going` describes exports that quitting would interrupt.
-pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Reply {
-    let look = ("unsaved changes", 380.0, Reply::Yes);
-    question(ctx, look, |ui, answer| {
+/// Asks whether to save unsaved changes; `exports` describes exports that quitting would interrupt.
+pub fn ask_about_changes(ctx: &Context, title: &str, exports: Option<&str>) -> Reply {
+    let dialog = ("unsaved changes", 380.0, Reply::Yes);
+    question(ctx, dialog, |ui, answer| {
         ui.heading(format!("Save changes to {title}?"));
         ui.add_space(GRID);
         ui.label("Without saving, the changes since the last save are lost.");
-        tell_going(ui, going);
+        show_running_exports(ui, exports);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            if primary(ui, "Save changes").clicked() {
+            if primary_button(ui, "Save changes").clicked() {
                 *answer = Reply::Yes;
             }
             if ui.button("Don't save").clicked() {
@@ -52,19 +52,19 @@ pub fn ask_about_changes(ctx: &Context, title: &str, going: Option<&str>) -> Rep
     })
 }
 
-/// Asks whether to quit; `going` describes exports that are still running.
-pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Reply {
-    let (width, heading) = match going {
+/// Asks whether to quit; `exports` describes exports that are still running.
+pub fn ask_to_quit(ctx: &Context, exports: Option<&str>) -> Reply {
+    let (width, heading) = match exports {
         Some(_) => (380.0, "Quit while exporting?"),
         None => (160.0, "Quit Glint?"),
     };
     // Esc, which is often pressed in passing, leads here too, so Enter must not end the session.
     question(ctx, ("quit", width, Reply::Cancel), |ui, answer| {
         ui.heading(heading);
-        tell_going(ui, going);
+        show_running_exports(ui, exports);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            if primary(ui, "Stay").clicked() {
+            if primary_button(ui, "Stay").clicked() {
                 *answer = Reply::Cancel;
             }
             if ui.button("Quit now").clicked() {
@@ -74,11 +74,11 @@ pub fn ask_to_quit(ctx: &Context, going: Option<&str>) -> Reply {
     })
 }
 
-fn tell_going(ui: &mut Ui, going: Option<&str>) {
-    if let Some(going) = going {
+fn show_running_exports(ui: &mut Ui, exports: Option<&str>) {
+    if let Some(exports) = exports {
         ui.add_space(GRID);
         ui.label(format!(
-            "Not finished: {going}. Finished frames are kept; Export animation can resume it next time."
+            "Not finished: {exports}. Finished frames are kept; Export animation can resume it next time."
         ));
     }
 }
@@ -100,9 +100,9 @@ pub struct PathPrompt {
     ask: Ask,
     label: &'static str,
     text: String,
-    is_new: bool,
+    needs_focus: bool,
     /// File about whose replacement the user was asked.
-    asked: Option<PathBuf>,
+    asked_file: Option<PathBuf>,
     /// Why a folder could not be created.
     problem: Option<String>,
     /// Why the operation failed with this path.
@@ -116,8 +116,8 @@ impl PathPrompt {
             ask,
             label,
             text: suggested.display().to_string(),
-            is_new: true,
-            asked: None,
+            needs_focus: true,
+            asked_file: None,
             problem: None,
             refused: None,
         }
@@ -125,7 +125,7 @@ impl PathPrompt {
 
     /// Notes why the operation failed with the typed path, and lets the user type its name again.
     pub fn refuse(&mut self, why: String) {
-        (self.refused, self.is_new) = (Some(why), true);
+        (self.refused, self.needs_focus) = (Some(why), true);
     }
 
     /// The typed path, with `~` expanded and a missing ending added.
@@ -151,10 +151,10 @@ impl PathPrompt {
             if field.changed() {
                 (self.problem, self.refused) = (None, None);
             }
-            if self.is_new {
+            if self.needs_focus {
                 field.request_focus();
                 select_letters(ui, field.id, stem(&self.text));
-                self.is_new = false;
+                self.needs_focus = false;
             }
             let warning = self.warning();
             let is_possible = warning.as_ref().is_none_or(|warning| warning.is_possible);
@@ -163,14 +163,16 @@ impl PathPrompt {
             ui.add_space(GRID);
             ui.horizontal(|ui| {
                 let entered = field.lost_focus() && ui.input(is_entered);
-                let can = is_possible && !self.text.trim().is_empty();
-                let button = ui.add_enabled_ui(can, |ui| primary(ui, self.word())).inner;
-                let is_accepted = can && (button.clicked() || entered);
+                let can_accept = is_possible && !self.text.trim().is_empty();
+                let button = ui
+                    .add_enabled_ui(can_accept, |ui| primary_button(ui, self.button_text()))
+                    .inner;
+                let is_accepted = can_accept && (button.clicked() || entered);
                 if is_accepted && (!self.would_replace() || self.is_asked()) {
                     *answer = Reply::Yes;
                 } else if is_accepted {
                     // A fast typist has not read yet that such a file exists.
-                    self.asked = Some(self.path());
+                    self.asked_file = Some(self.path());
                 }
                 if *answer == Reply::Open && entered {
                     // The field keeps the focus, so that the text can be corrected.
@@ -192,7 +194,7 @@ impl PathPrompt {
     }
 
     /// Returns the text of the primary button.
-    fn word(&self) -> &'static str {
+    fn button_text(&self) -> &'static str {
         if !self.ask.writes() {
             "Open file"
         } else if self.is_asked() {
@@ -209,25 +211,25 @@ impl PathPrompt {
 
     /// Whether the user was asked about replacing this file.
     fn is_asked(&self) -> bool {
-        self.asked.as_ref() == Some(&self.path())
+        self.asked_file.as_ref() == Some(&self.path())
     }
 
     /// Returns the folder of a file to be written, if it does not exist and can be created.
     fn missing_folder(&self) -> Option<PathBuf> {
         let path = self.path();
         let folder = path.parent().filter(|_| self.ask.writes())?;
-        let is_there = folder.as_os_str().is_empty() || folder.is_dir();
-        (!is_there && self.file_in_the_way().is_none()).then(|| folder.to_owned())
+        let exists = folder.as_os_str().is_empty() || folder.is_dir();
+        (!exists && self.file_in_the_way().is_none()).then(|| folder.to_owned())
     }
 
     /// Returns a file that is in the place of a folder of the path.
     fn file_in_the_way(&self) -> Option<PathBuf> {
         let path = self.path();
         let folders = path.ancestors().skip(1);
-        let there = folders
+        let existing = folders
             .filter(|_| self.ask.writes())
             .find(|folder| folder.exists())?;
-        (!there.is_dir()).then(|| there.to_owned())
+        (!existing.is_dir()).then(|| existing.to_owned())
     }
 
     fn warning(&self) -> Option<Warning> {
@@ -254,17 +256,21 @@ impl PathPrompt {
         if let Some(folder) = self.missing_folder() {
             return impossible(format!("There is no folder {}", folder.display()));
         }
-        if !self.ask.takes(&path) {
+        if !self.ask.accepts(&path) {
             let endings = self.ask.endings().join(", .");
             return impossible(format!(
                 "The file name must end in one of these: .{endings}"
             ));
         }
         let takes_folder = self.ask == Ask::ExportFolder;
-        let is_begun = self.text.trim().ends_with(std::path::is_separator);
-        if !takes_folder && (is_begun || self.typed().is_dir() || path.is_dir()) {
+        let ends_with_separator = self.text.trim().ends_with(std::path::is_separator);
+        if !takes_folder && (ends_with_separator || self.typed().is_dir() || path.is_dir()) {
             // The file name may not be typed yet.
-            let words = if is_begun { "" } else { "This is a folder" };
+            let words = if ends_with_separator {
+                ""
+            } else {
+                "This is a folder"
+            };
             return impossible(words.to_owned());
         }
         if self.would_replace() {
@@ -295,7 +301,7 @@ struct Warning {
 
 /// Returns whether Enter was pressed in this frame, not counting repeats of a held key.
 fn is_entered(input: &InputState) -> bool {
-    let is_it = |event: &Event| {
+    let is_enter = |event: &Event| {
         matches!(
             event,
             Event::Key {
@@ -306,7 +312,7 @@ fn is_entered(input: &InputState) -> bool {
             }
         )
     };
-    input.events.iter().any(is_it)
+    input.events.iter().any(is_enter)
 }
 
 /// Returns the characters of a path that are the file's name without its ending, which typing is to replace.
@@ -319,9 +325,9 @@ fn stem(path: &str) -> Range<usize> {
 }
 
 /// Selects characters of a text field, whose stored cursor may be from another text.
-pub fn select_letters(ui: &Ui, field: Id, letters: Range<usize>) {
+pub fn select_letters(ui: &Ui, field: Id, characters: Range<usize>) {
     let mut state = TextEdit::load_state(ui.ctx(), field).unwrap_or_default();
-    let [start, end] = [letters.start, letters.end].map(CCursor::new);
+    let [start, end] = [characters.start, characters.end].map(CCursor::new);
     let range = CCursorRange::two(start, end);
     state.cursor.set_char_range(Some(range));
     state.store(ui.ctx(), field);
@@ -336,7 +342,7 @@ pub fn question(
 ) -> Reply {
     let mut answer = Reply::Open;
     let (id, now) = (Id::unique(name).with("asked"), ctx.cumulative_frame_nr());
-    let asked = ctx.data_mut(|data| {
+    let last_shown = ctx.data_mut(|data| {
         let last = data.get_temp::<u64>(id);
         data.insert_temp(id, now);
         last
@@ -351,15 +357,15 @@ pub fn question(
         answer = Reply::Cancel;
     }
     // The key press that opened the question must not answer it.
-    let was_asked = asked.is_some_and(|last| last + 1 == now);
-    if answer == Reply::Open && was_asked && ctx.input(|input| input.key_pressed(Key::Enter)) {
+    let was_shown = last_shown.is_some_and(|last| last + 1 == now);
+    if answer == Reply::Open && was_shown && ctx.input(|input| input.key_pressed(Key::Enter)) {
         answer = on_enter;
     }
     answer
 }
 
 /// Shows the primary button.
-pub fn primary(ui: &mut Ui, text: &str) -> egui::Response {
+pub fn primary_button(ui: &mut Ui, text: &str) -> egui::Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))
 }

@@ -10,15 +10,15 @@ use crate::lab::meet;
 use crate::scene::{Scene, Shape, around};
 
 /// Number of vertical lines along each side of a thing that probe what is below it.
-const LINES: usize = 5;
+const LINES_PER_SIDE: usize = 5;
 /// Most tests of shapes and faces with such lines: they take a tenth of a second.
-const MOST_WORK: usize = 20_000_000;
+const MAX_TESTS: usize = 20_000_000;
 /// Gap up to which a thing counts as standing on what is below it, relative to the coordinates.
-const STANDING: f64 = 1e-9;
+const STANDING_TOLERANCE: f64 = 1e-9;
 /// Height of a flat thing above what is below it, as a share of its size: in the same surface, it might be invisible.
-const LYING: f64 = 1e-3;
+const FLAT_GAP: f64 = 1e-3;
 /// Distance from a thing at which lines towards it begin, relative to the coordinates.
-const APART: f64 = 1e-6;
+const START_OFFSET: f64 = 1e-6;
 
 /// A vertical line through a thing: its position, and the thing's lowest and highest point on it.
 struct VerticalLine {
@@ -35,19 +35,19 @@ struct VerticalLine {
 /// The reason why nothing moves, in words.
 pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static str> {
     let mut bodies = bodies(scene, selected);
-    let ends = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
-    bodies.retain(|body: &Vec<usize>| body.iter().all(ends));
+    let is_finite = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
+    bodies.retain(|body: &Vec<usize>| body.iter().all(is_finite));
     if bodies.is_empty() {
         return Err("Infinite objects, such as planes, cannot be put down");
     }
     let work = bodies.len() * (scene.objects.len() + scene.faces());
-    if work > MOST_WORK {
+    if work > MAX_TESTS {
         return Err("There are too many objects and faces to put this down at once");
     }
-    let lines = if work * LINES * LINES > MOST_WORK {
+    let lines = if work * LINES_PER_SIDE * LINES_PER_SIDE > MAX_TESTS {
         0
     } else {
-        LINES
+        LINES_PER_SIDE
     };
     // In ascending order, so that things that stand on others come down with them.
     let low = |body: &Vec<usize>| bounds(scene, body).0.y;
@@ -93,11 +93,11 @@ fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
             group => groups.entry(group).or_default().push(index),
         }
     }
-    for (group, own) in groups {
-        if members.get(group) == Some(&own.len()) {
-            bodies.push(own);
+    for (group, indices) in groups {
+        if members.get(group) == Some(&indices.len()) {
+            bodies.push(indices);
         } else {
-            bodies.extend(own.into_iter().map(|index| vec![index]));
+            bodies.extend(indices.into_iter().map(|index| vec![index]));
         }
     }
     bodies
@@ -110,13 +110,13 @@ fn gap_below(scene: &Scene, body: &[usize], lines: usize) -> Option<f64> {
     let gap = gaps.reduce(f64::min)?;
     let (low, high) = bounds(scene, body);
     let size = low.abs().max(high.abs()).max_element();
-    let is_flat = high.y - low.y <= STANDING * (1.0 + size);
+    let is_flat = high.y - low.y <= STANDING_TOLERANCE * (1.0 + size);
     let gap = if is_flat {
-        gap - LYING * (high - low).max_element()
+        gap - FLAT_GAP * (high - low).max_element()
     } else {
         gap
     };
-    let is_standing = gap.abs() <= STANDING * (1.0 + size);
+    let is_standing = gap.abs() <= STANDING_TOLERANCE * (1.0 + size);
     Some(if is_standing { 0.0 } else { gap })
 }
 
@@ -125,20 +125,20 @@ fn lines_through(scene: &Scene, body: &[usize], lines: usize) -> Vec<VerticalLin
     let (low, high) = bounds(scene, body);
     let shapes = || body.iter().map(|&index| &scene.objects[index].shape);
     let top = |x: f64, z: f64| {
-        let met = shapes().filter_map(|shape| downwards(shape, DVec3::new(x, high.y, z)));
-        met.reduce(f64::max)
+        let heights = shapes().filter_map(|shape| surface_below(shape, DVec3::new(x, high.y, z)));
+        heights.reduce(f64::max)
     };
     let share = |line: usize| (line as f64 + 0.5) / lines as f64;
-    let places = (0..lines).flat_map(|x| (0..lines).map(move |z| (share(x), share(z))));
-    let mut found: Vec<VerticalLine> = places
+    let grid = (0..lines).flat_map(|x| (0..lines).map(move |z| (share(x), share(z))));
+    let mut found: Vec<VerticalLine> = grid
         .filter_map(|(x, z)| {
-            let place = low + (high - low) * DVec3::new(x, 0.0, z);
-            let met = shapes().filter_map(|shape| upwards(shape, place));
+            let point = low + (high - low) * DVec3::new(x, 0.0, z);
+            let heights = shapes().filter_map(|shape| surface_above(shape, point));
             Some(VerticalLine {
-                x: place.x,
-                z: place.z,
-                low: met.reduce(f64::min)?,
-                high: top(place.x, place.z)?,
+                x: point.x,
+                z: point.z,
+                low: heights.reduce(f64::min)?,
+                high: top(point.x, point.z)?,
             })
         })
         .collect();
@@ -164,30 +164,30 @@ fn ground_below(scene: &Scene, body: &[usize], line: &VerticalLine) -> Option<f6
     let others =
         others.filter(|(index, other)| other.visible && body.binary_search(index).is_err());
     let heights = others.filter_map(|(_, other)| {
-        let is_beside = other.shape.bounds().is_some_and(|(low, high)| {
+        let is_outside = other.shape.bounds().is_some_and(|(low, high)| {
             line.x < low.x || line.x > high.x || line.z < low.z || line.z > high.z
         });
-        (!is_beside).then(|| downwards(&other.shape, from))?
+        (!is_outside).then(|| surface_below(&other.shape, from))?
     });
     heights.reduce(f64::max)
 }
 
 /// Returns the height at which a shape is met below `from`; `None` if that is inside a ball.
-fn downwards(shape: &Shape, from: DVec3) -> Option<f64> {
-    let from = from + DVec3::Y * apart(from);
+fn surface_below(shape: &Shape, from: DVec3) -> Option<f64> {
+    let from = from + DVec3::Y * start_offset(from);
     let (t, normal) = meet(shape, from, DVec3::NEG_Y)?;
     let is_inside = matches!(shape, Shape::Sphere(_)) && normal.y < 0.0;
     (!is_inside).then_some(from.y - t)
 }
 
 /// Returns the height at which a shape is met above `from`.
-fn upwards(shape: &Shape, from: DVec3) -> Option<f64> {
-    let from = from - DVec3::Y * apart(from);
+fn surface_above(shape: &Shape, from: DVec3) -> Option<f64> {
+    let from = from - DVec3::Y * start_offset(from);
     Some(from.y + meet(shape, from, DVec3::Y)?.0)
 }
 
-fn apart(from: DVec3) -> f64 {
-    APART * (1.0 + from.abs().max_element())
+fn start_offset(from: DVec3) -> f64 {
+    START_OFFSET * (1.0 + from.abs().max_element())
 }
 
 /// Returns the bounding box of objects that are not endless.

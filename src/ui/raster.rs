@@ -32,7 +32,7 @@ pub fn draw(
         let mut output = ctx.run_ui(input, &mut show);
         for (id, deltas) in output.textures_delta.set.drain() {
             for delta in deltas {
-                take(&mut textures, id, &delta.image, delta.pos);
+                update_texture(&mut textures, id, &delta.image, delta.pos);
             }
         }
         output.textures_delta.free.clear();
@@ -66,14 +66,14 @@ pub fn draw(
     }
 }
 
-fn take(
+fn update_texture(
     textures: &mut HashMap<TextureId, ColorImage>,
     id: TextureId,
     image: &ImageData,
-    place: Option<[usize; 2]>,
+    position: Option<[usize; 2]>,
 ) {
     let ImageData::Color(part) = image;
-    let (Some([left, top]), Some(whole)) = (place, textures.get_mut(&id)) else {
+    let (Some([left, top]), Some(whole)) = (position, textures.get_mut(&id)) else {
         textures.insert(id, ColorImage::clone(part));
         return;
     };
@@ -104,17 +104,17 @@ fn fill_triangle(
     scale: f32,
 ) {
     let [a, b, c] = corners.map(|corner| corner.pos.to_vec2() * scale);
-    let doubled = |p: egui::Vec2, q: egui::Vec2, r: egui::Vec2| {
+    let doubled_area = |p: egui::Vec2, q: egui::Vec2, r: egui::Vec2| {
         (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)
     };
-    let area = doubled(a, b, c);
+    let area = doubled_area(a, b, c);
     if area == 0.0 {
         return;
     }
     let [width, height] = canvas.size;
-    let range = |low: f32, high: f32, from: f32, to: f32, most: usize| {
+    let range = |low: f32, high: f32, from: f32, to: f32, limit: usize| {
         let first = (low.max(from) - 0.5).ceil().max(0.0) as usize;
-        first..((high.min(to) + 0.5).ceil().max(0.0) as usize).min(most)
+        first..((high.min(to) + 0.5).ceil().max(0.0) as usize).min(limit)
     };
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
     for y in range(low.y, high.y, clip.min.y, clip.max.y, height) {
@@ -123,41 +123,45 @@ fn fill_triangle(
             if !clip.contains(p.to_pos2()) {
                 continue;
             }
-            let shares = [doubled(p, b, c), doubled(a, p, c), doubled(a, b, p)];
-            let shares = shares.map(|share| share / area);
+            let weights = [
+                doubled_area(p, b, c),
+                doubled_area(a, p, c),
+                doubled_area(a, b, p),
+            ];
+            let weights = weights.map(|weight| weight / area);
             // A pixel centre on the common edge of two triangles belongs to only one of them.
             let edges = [(b, c), (c, a), (a, b)];
-            let inside = shares.iter().zip(edges).all(|(&share, (from, to))| {
+            let inside = weights.iter().zip(edges).all(|(&weight, (from, to))| {
                 let (from, to) = if area > 0.0 { (from, to) } else { (to, from) };
                 let is_upper_left = to.y < from.y || (to.y == from.y && to.x > from.x);
-                share > 0.0 || (share == 0.0 && is_upper_left)
+                weight > 0.0 || (weight == 0.0 && is_upper_left)
             });
             if inside {
-                let color = mixed(corners, shares, texture);
+                let color = interpolated_color(corners, weights, texture);
                 let below = &mut canvas.pixels[y * width + x];
-                *below = over(color, *below);
+                *below = blend_over(color, *below);
             }
         }
     }
 }
 
 /// Returns the interpolated vertex colour times that of the texture, premultiplied, 0–1.
-fn mixed(corners: [Vertex; 3], shares: [f32; 3], texture: &ColorImage) -> [f32; 4] {
+fn interpolated_color(corners: [Vertex; 3], weights: [f32; 3], texture: &ColorImage) -> [f32; 4] {
     let mut color = [0.0; 4];
-    let mut place = egui::Vec2::ZERO;
-    for (corner, share) in corners.iter().zip(shares) {
+    let mut uv = egui::Vec2::ZERO;
+    for (corner, weight) in corners.iter().zip(weights) {
         for (sum, part) in color.iter_mut().zip(corner.color.to_array()) {
-            *sum += f32::from(part) / 255.0 * share;
+            *sum += f32::from(part) / 255.0 * weight;
         }
-        place += corner.uv.to_vec2() * share;
+        uv += corner.uv.to_vec2() * weight;
     }
-    let texel = bilinear(texture, place);
+    let texel = bilinear(texture, uv);
     [0, 1, 2, 3].map(|channel| color[channel] * texel[channel])
 }
 
-fn bilinear(texture: &ColorImage, place: egui::Vec2) -> [f32; 4] {
+fn bilinear(texture: &ColorImage, uv: egui::Vec2) -> [f32; 4] {
     let [width, height] = texture.size;
-    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let (x, y) = (uv.x * width as f32 - 0.5, uv.y * height as f32 - 0.5);
     let at = |x: f32, y: f32| {
         let column = (x.max(0.0) as usize).min(width - 1);
         let row = (y.max(0.0) as usize).min(height - 1);
@@ -174,17 +178,17 @@ fn bilinear(texture: &ColorImage, place: egui::Vec2) -> [f32; 4] {
     [0, 1, 2, 3].map(|channel| {
         let parts = corners.iter();
         parts
-            .map(|(texel, share)| f32::from(texel[channel]) / 255.0 * share)
+            .map(|(texel, weight)| f32::from(texel[channel]) / 255.0 * weight)
             .sum()
     })
 }
 
 /// Blends a premultiplied colour over an opaque one.
-fn over(color: [f32; 4], below: Color32) -> Color32 {
-    let rest = 1.0 - color[3];
+fn blend_over(color: [f32; 4], below: Color32) -> Color32 {
+    let background_share = 1.0 - color[3];
     let [red, green, blue, _] = below.to_array();
     let mix = |channel: usize, below: u8| {
-        (color[channel] * 255.0 + f32::from(below) * rest).round() as u8
+        (color[channel] * 255.0 + f32::from(below) * background_share).round() as u8
     };
     Color32::from_rgb(mix(0, red), mix(1, green), mix(2, blue))
 }
@@ -258,8 +262,8 @@ mod tests {
         let id = TextureId::default();
         let mut textures = HashMap::new();
         let image = |size, texels: &[[u8; 4]]| ImageData::Color(texture(size, texels).into());
-        take(&mut textures, id, &image([2, 2], &[[0; 4]; 4]), None);
-        take(&mut textures, id, &image([1, 1], &[WHITE]), Some([1, 0]));
+        update_texture(&mut textures, id, &image([2, 2], &[[0; 4]; 4]), None);
+        update_texture(&mut textures, id, &image([1, 1], &[WHITE]), Some([1, 0]));
         let reds: Vec<u8> = textures[&id].pixels.iter().map(egui::Color32::r).collect();
         assert_eq!(reds, [0, 255, 0, 0]);
     }

@@ -11,13 +11,13 @@ use crate::scene::{Document, MeshSource, Scene, SceneError};
 use crate::worker::Background;
 
 /// The outcome of reading.
-pub enum Read {
+pub enum ReadOutcome {
     /// A scene file with its meshes, which replaces the document.
     Scene(Box<Result<(Document, Stamp), SceneError>>),
     /// A mesh file, whose parts become objects.
     Mesh(Result<MeshFile, MeshError>),
     /// Mesh files of the scene, read again.
-    Again(Vec<MeshSource>),
+    ReloadedMeshes(Vec<MeshSource>),
     /// Nothing: the reading thread stopped.
     Nothing,
 }
@@ -26,18 +26,18 @@ pub enum Read {
 pub struct Reading {
     /// Path of the file.
     pub path: PathBuf,
-    answer: Background<Read>,
+    answer: Background<ReadOutcome>,
     is_scene: bool,
     since: Instant,
     /// The scene when reading began, and the number of its document, see [`Editor::documents`].
-    before: Arc<Scene>,
+    initial_scene: Arc<Scene>,
     document: u64,
 }
 
 impl Reading {
     /// Starts to read a scene file.
     pub fn scene(editor: &Editor, path: &Path) -> Self {
-        let read = |path: PathBuf| Read::Scene(Box::new(Document::load_stamped(&path)));
+        let read = |path: PathBuf| ReadOutcome::Scene(Box::new(Document::load_stamped(&path)));
         Self {
             is_scene: true,
             ..Self::start(editor, path, read)
@@ -51,50 +51,52 @@ impl Reading {
 
     /// Starts to read a mesh file.
     pub fn parts(editor: &Editor, path: &Path) -> Self {
-        Self::start(editor, path, |path| Read::Mesh(read_mesh_file(&path)))
+        Self::start(editor, path, |path| {
+            ReadOutcome::Mesh(read_mesh_file(&path))
+        })
     }
 
     /// Starts to read mesh files again, given as folders and paths within them; `None` if there are none.
-    pub fn again(editor: &Editor, files: Vec<(PathBuf, String)>) -> Option<Self> {
+    pub fn reload_meshes(editor: &Editor, files: Vec<(PathBuf, String)>) -> Option<Self> {
         let (folder, path) = files.first()?;
         let first = folder.join(path);
         Some(Self::start(editor, &first, |_| {
             let files = files.into_iter();
             let read = files.map(|(folder, path)| MeshSource::read_anew(&folder, path));
-            Read::Again(read.collect())
+            ReadOutcome::ReloadedMeshes(read.collect())
         }))
     }
 
     fn start(
         editor: &Editor,
         path: &Path,
-        read: impl FnOnce(PathBuf) -> Read + Send + 'static,
+        read: impl FnOnce(PathBuf) -> ReadOutcome + Send + 'static,
     ) -> Self {
-        let own = path.to_owned();
+        let owned_path = path.to_owned();
         Self {
             path: path.to_owned(),
-            answer: Background::start("glint-reader", move || read(own)),
+            answer: Background::start("glint-reader", move || read(owned_path)),
             is_scene: false,
             since: Instant::now(),
-            before: Arc::clone(editor.scene()),
+            initial_scene: Arc::clone(editor.scene()),
             document: editor.documents(),
         }
     }
 
     /// Returns what was read, if that is known within this time.
-    pub fn wait(&mut self, most: Duration) -> Option<Read> {
-        let read = self.answer.take_within(most)?;
-        Some(read.unwrap_or(Read::Nothing))
+    pub fn wait(&mut self, timeout: Duration) -> Option<ReadOutcome> {
+        let read = self.answer.take_within(timeout)?;
+        Some(read.unwrap_or(ReadOutcome::Nothing))
     }
 
     /// Whether the document has changes since reading began that are not saved, or a flight is being recorded.
-    pub fn is_outrun(&self, editor: &Editor) -> bool {
-        let is_other = !Arc::ptr_eq(&self.before, editor.scene());
-        (editor.is_dirty() && is_other) || editor.is_recording()
+    pub fn is_outdated(&self, editor: &Editor) -> bool {
+        let has_changed = !Arc::ptr_eq(&self.initial_scene, editor.scene());
+        (editor.is_dirty() && has_changed) || editor.is_recording()
     }
 
     /// Whether another document is open by now.
-    pub fn is_of_another(&self, editor: &Editor) -> bool {
+    pub fn is_for_other_document(&self, editor: &Editor) -> bool {
         self.document != editor.documents()
     }
 

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::hint::Hinted as _;
 pub use super::number::{Field, coordinate, fraction};
-use super::number::{Number, drag, is_cancelled, tell_refused};
+use super::number::{Number, drag, is_cancelled, note_refusal};
 use super::theme::{GRID, HEX, LABEL, ROW, palette};
 use crate::scene::format_number;
 use crate::words::quoted;
@@ -55,7 +55,7 @@ impl<'u> FieldRows<'u> {
         self.chosen
     }
 
-    fn note(&mut self, name: &'static str, changed: bool) {
+    fn note_change(&mut self, name: &'static str, changed: bool) {
         if changed {
             self.changed = Some(name);
         }
@@ -89,7 +89,7 @@ impl<'u> FieldRows<'u> {
                 is_chosen = drag(ui, &number, value) || reset;
             },
         );
-        self.note(field.name, *value != before);
+        self.note_change(field.name, *value != before);
         if is_chosen {
             let (field, part) = (field.name, None);
             self.chosen = Some(EditedPart { field, part });
@@ -136,7 +136,7 @@ impl<'u> FieldRows<'u> {
                 chosen = Some(part_of(None));
             }
         });
-        self.note(field.name, *value != before);
+        self.note_change(field.name, *value != before);
         self.chosen = chosen.or(self.chosen);
     }
 
@@ -158,14 +158,14 @@ impl<'u> FieldRows<'u> {
             speed: Some(1.0),
         };
         let (mut changed, mut chosen) = (name, None);
-        let all = EditedPart {
+        let whole_color = EditedPart {
             field: name,
             part: None,
         };
         row(self.ui, &field, &format_vec3(default), |ui, reset| {
             if reset {
                 *value = default;
-                chosen = Some(all);
+                chosen = Some(whole_color);
             }
             ui.spacing_mut().interact_size.x = ROW;
             swatch(ui, name, value);
@@ -174,7 +174,7 @@ impl<'u> FieldRows<'u> {
             let pasted = Cell::new(None);
             let parts = [&mut value.x, &mut value.y, &mut value.z];
             for (index, (name, part)) in channels.into_iter().zip(parts).enumerate() {
-                let own = *part;
+                let previous = *part;
                 let number = Number {
                     field: &field,
                     name,
@@ -187,20 +187,20 @@ impl<'u> FieldRows<'u> {
                     let part = Some(index);
                     chosen = Some(EditedPart { field: name, part });
                 }
-                if *part != own {
+                if *part != previous {
                     changed = name;
                 }
             }
             if let Some(whole) = pasted.get() {
-                (*value, changed, chosen) = (whole, name, Some(all));
+                (*value, changed, chosen) = (whole, name, Some(whole_color));
             }
-            let own = *value;
-            hex(ui, name, value);
-            if *value != own {
+            let previous = *value;
+            hex_field(ui, name, value);
+            if *value != previous {
                 changed = name;
             }
         });
-        self.note(changed, *value != before);
+        self.note_change(changed, *value != before);
         self.chosen = chosen.or(self.chosen);
     }
 
@@ -211,7 +211,7 @@ impl<'u> FieldRows<'u> {
             tick.hint_beside(ui, hint);
             tick.changed()
         });
-        self.note(name, changed);
+        self.note_change(name, changed);
     }
 
     /// Adds a row with a choice among named options.
@@ -248,7 +248,7 @@ impl<'u> FieldRows<'u> {
         if let Some(option) = chosen {
             let changed = option != *value;
             *value = option;
-            self.note(name, changed);
+            self.note_change(name, changed);
             let part = None;
             self.chosen = Some(EditedPart { field: name, part });
         }
@@ -272,8 +272,8 @@ pub(crate) use color_names;
 
 /// Returns whether this is the name of a colour's channel.
 pub fn is_channel(name: &str) -> bool {
-    let (_, ends) = color_names!("");
-    ends.iter().any(|end| name.ends_with(end))
+    let (_, suffixes) = color_names!("");
+    suffixes.iter().any(|end| name.ends_with(end))
 }
 
 /// Shows a row whose label resets it.
@@ -335,7 +335,7 @@ fn swatch(ui: &mut Ui, name: &str, value: &mut DVec3) {
 }
 
 /// Shows the colour as `#RRGGBB`, to copy and to type.
-fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
+fn hex_field(ui: &mut Ui, name: &str, value: &mut DVec3) {
     let [r, g, b] = to_bytes(*value);
     let packed = f64::from(u32::from_be_bytes([0, r, g, b]));
     let mut edited = packed;
@@ -356,7 +356,7 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
         .add_sized([HEX, ROW], widget)
         .accessible_name(format!("{name} hex"));
     let is_cancelled = is_cancelled(ui, &response);
-    tell_refused(&response, is_cancelled, refused.take());
+    note_refusal(&response, is_cancelled, refused.take());
     if response.changed() && edited != packed && !is_cancelled {
         let [_, r, g, b] = (edited as u32).to_be_bytes();
         *value = DVec3::new(f64::from(r), f64::from(g), f64::from(b));

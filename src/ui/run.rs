@@ -7,12 +7,14 @@ use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::{Command, Next, Zoom, what_of};
+use super::commands::{Command, Next, Zoom, description_of};
 use super::dropped::Dropped;
 use super::interchange::import_path;
 use super::layout::Below;
 use super::obstacles::{is_enabled, obstacle};
-use super::on_selected::{delete, duplicate_all, joined, step, toggle_visible, with_same_pack};
+use super::on_selected::{
+    delete, duplicate_all, move_step, objects_to_join, toggle_visible, with_same_pack,
+};
 use super::put_down::put_down;
 use super::requests::UiRequests;
 use super::timeline::actions;
@@ -25,10 +27,10 @@ use crate::scene::{Aspect, Bookmark, Document, Projection};
 use crate::words::counted;
 
 /// Seconds within which a second press of Escape asks whether to quit.
-const TWICE: f64 = 3.0;
+const DOUBLE_ESCAPE_SECONDS: f64 = 3.0;
 
 /// Most triangles that are copied as text.
-const COPIED_FACES: usize = 100_000;
+const MAX_COPIED_FACES: usize = 100_000;
 
 /// Subject of messages about commands that are not possible.
 const OBSTACLE: &str = "obstacle";
@@ -66,11 +68,11 @@ impl App {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         let files: Vec<_> = files.iter().map(|file| file.path().to_owned()).collect();
         let dropped = Dropped::of(&files);
-        let left = dropped
+        let unused = dropped
             .as_ref()
-            .map_or(0, |dropped| dropped.left_of(&files));
-        if left > 0 {
-            let files = counted(left, "other file");
+            .map_or(0, |dropped| dropped.unused_count(&files));
+        if unused > 0 {
+            let files = counted(unused, "other file");
             self.editor.notify(format!(
                 "Only one scene, or meshes and one path, can be dropped at a time: {files} ignored"
             ));
@@ -121,14 +123,14 @@ impl App {
                 }
             }
             Command::Copy | Command::Cut if !self.editor.selection().keys().is_empty() => {
-                let told = "Duplicate copies keys to the playhead; Ctrl-dragging copies them along their row";
-                self.editor.notify(told.to_owned());
+                let notice = "Duplicate copies keys to the playhead; Ctrl-dragging copies them along their row";
+                self.editor.notify(notice.to_owned());
             }
             Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
             Command::Paste(text) => self.paste(&text),
             Command::Lab => self.toggle_below(Below::Lab),
             Command::Timeline => self.toggle_below(Below::Timeline),
-            Command::SelectAll if self.means_keys(ctx) => self.run(ctx, Command::SelectKeys),
+            Command::SelectAll if self.selects_all_keys(ctx) => self.run(ctx, Command::SelectKeys),
             Command::SelectAll => {
                 let all = Action::Select(Selection::all(Item::everything(self.editor.scene())));
                 self.editor.apply(all);
@@ -139,7 +141,7 @@ impl App {
             Command::Theme(theme) => ctx.set_theme(theme),
             Command::Zoom(Zoom::In) => zoom_in(ctx),
             Command::Zoom(Zoom::Out) => zoom_out(ctx),
-            Command::Zoom(Zoom::Usual) => ctx.set_zoom_factor(1.0),
+            Command::Zoom(Zoom::Default) => ctx.set_zoom_factor(1.0),
             Command::PictureAlone => self.layout.is_alone = !self.layout.is_alone,
             Command::Aspect(aspect) => {
                 self.lab.leave();
@@ -161,7 +163,7 @@ impl App {
             other => {
                 // Menus show what is not possible, but keys need a message.
                 if let Some(why) = obstacle(&other, &self.editor) {
-                    let what = what_of(&other).unwrap_or_default();
+                    let what = description_of(&other).unwrap_or_default();
                     return self.editor.notify_about(OBSTACLE, format!("{what}: {why}"));
                 }
                 for action in actions(&other, &self.editor) {
@@ -170,14 +172,14 @@ impl App {
                 let before = self.editor.revision();
                 self.run_on_scene(&other);
                 if other == Command::Duplicate && self.editor.revision() != before {
-                    self.tell_unseen("The copy");
+                    self.report_unseen("The copy");
                 }
             }
         }
     }
 
     /// Tells the user how to see the new selection if it is outside the picture.
-    fn tell_unseen(&mut self, what: &str) {
+    fn report_unseen(&mut self, what: &str) {
         if is_selected_unseen(&self.editor) {
             let text = format!("{what} is outside the picture; F frames it");
             self.editor.notify_of_step(text);
@@ -200,7 +202,7 @@ impl App {
     }
 
     /// Whether *Select all* applies to keys, because the pointer is over the timeline.
-    fn means_keys(&self, ctx: &Context) -> bool {
+    fn selects_all_keys(&self, ctx: &Context) -> bool {
         let is_over = self.timeline.is_hovered(ctx.cumulative_frame_nr());
         let has_keys = !self.editor.scene().animation.is_still();
         has_keys && is_over
@@ -210,7 +212,7 @@ impl App {
     fn copy(&mut self, ctx: &Context) -> bool {
         let part = excerpt(self.editor.scene(), self.editor.selection());
         // Another window looks for mesh files in another folder, so only large meshes are copied as file names.
-        let whole = if part.faces() <= COPIED_FACES {
+        let whole = if part.faces() <= MAX_COPIED_FACES {
             part.inlined()
         } else {
             part.clone()
@@ -250,7 +252,7 @@ impl App {
         let is_whole = pasted.mesh_problems().next().is_none();
         let paste = Edit::Paste(Box::new(pasted), "Paste");
         if self.editor.changes(Action::Edit(paste)) {
-            self.tell_unseen("The pasted selection");
+            self.report_unseen("The pasted selection");
             if !is_whole {
                 self.editor.tell_missing_meshes();
             }
@@ -283,13 +285,13 @@ impl App {
                 };
                 Action::Edit(Edit::Camera(camera, "frame"))
             }
-            Command::ViewFront => seen_along(editor, DVec3::NEG_Z),
-            Command::ViewRight => seen_along(editor, DVec3::NEG_X),
-            Command::ViewTop => seen_along(editor, DVec3::NEG_Y),
-            Command::Perspective if is_seen_in(editor, Projection::Perspective) => return,
-            Command::Perspective => projected(editor, Projection::Perspective),
-            Command::Orthographic if is_seen_in(editor, Projection::Orthographic) => return,
-            Command::Orthographic => projected(editor, Projection::Orthographic),
+            Command::ViewFront => view_along(editor, DVec3::NEG_Z),
+            Command::ViewRight => view_along(editor, DVec3::NEG_X),
+            Command::ViewTop => view_along(editor, DVec3::NEG_Y),
+            Command::Perspective if has_projection(editor, Projection::Perspective) => return,
+            Command::Perspective => change_projection(editor, Projection::Perspective),
+            Command::Orthographic if has_projection(editor, Projection::Orthographic) => return,
+            Command::Orthographic => change_projection(editor, Projection::Orthographic),
             Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
             Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
             Command::Delete => return delete(editor),
@@ -303,7 +305,7 @@ impl App {
                 Action::Edit(Edit::Group(objects, String::new()))
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
-            Command::Join => Action::Edit(Edit::Join(joined(editor))),
+            Command::Join => Action::Edit(Edit::Join(objects_to_join(editor))),
             Command::Separate => match editor.selection().item() {
                 Some(item) => Action::Edit(Edit::Separate(item.index)),
                 None => return,
@@ -332,7 +334,7 @@ impl App {
             }
             Command::MoveUp | Command::MoveDown => {
                 let is_down = *command == Command::MoveDown;
-                let Some(edit) = step(editor, is_down) else {
+                let Some(edit) = move_step(editor, is_down) else {
                     let side = if is_down { "below" } else { "above" };
                     return editor.notify(format!("Nothing is {side} it in its list or group"));
                 };
@@ -351,16 +353,16 @@ impl App {
             },
         };
         if editor.changes(action)
-            && let Some(done) = told(command)
+            && let Some(message) = message_after(command)
         {
-            editor.notify_of_step(done.to_owned());
+            editor.notify_of_step(message.to_owned());
         }
     }
 
     /// Leaves the innermost mode or window. If there is none, a second press asks whether to quit.
     fn escape(&mut self, ctx: &Context) {
         let time = ctx.input(|input| input.time);
-        let last = self.escaped.take();
+        let last = self.last_idle_escape.take();
         if self.layout.is_alone {
             self.layout.is_alone = false;
         } else if self.shortcuts_open {
@@ -388,10 +390,10 @@ impl App {
             self.editor.apply(Action::Time(Time::LookThrough(false)));
         } else if *self.editor.selection() != Selection::Camera {
             self.editor.apply(Action::Select(Selection::Camera));
-        } else if last.is_some_and(|last| time - last < TWICE) {
+        } else if last.is_some_and(|last| time - last < DOUBLE_ESCAPE_SECONDS) {
             self.files.ask_to_quit(&mut self.editor);
         } else {
-            self.escaped = Some(time);
+            self.last_idle_escape = Some(time);
             self.editor
                 .notify("Esc once more asks whether to quit".to_owned());
         }
@@ -400,7 +402,7 @@ impl App {
 
 /// Returns a message for commands on a letter or digit key that change the whole picture: the key may have been
 /// meant for a text field.
-fn told(command: &Command) -> Option<&'static str> {
+fn message_after(command: &Command) -> Option<&'static str> {
     Some(match command {
         Command::Orthographic => "Orthographic projection; P switches to perspective",
         Command::Perspective => "Perspective projection; O switches to orthographic",
@@ -422,15 +424,15 @@ fn add_bookmark(editor: &mut Editor) -> Action {
     Action::Edit(Edit::Bookmarks(bookmarks, "Add bookmark"))
 }
 
-fn seen_along(editor: &Editor, direction: DVec3) -> Action {
+fn view_along(editor: &Editor, direction: DVec3) -> Action {
     Action::Edit(Edit::Camera(axis_camera(editor, direction), "view"))
 }
 
-fn is_seen_in(editor: &Editor, projection: Projection) -> bool {
+fn has_projection(editor: &Editor, projection: Projection) -> bool {
     editor.shown().camera.projection == projection
 }
 
-fn projected(editor: &Editor, projection: Projection) -> Action {
+fn change_projection(editor: &Editor, projection: Projection) -> Action {
     let camera = projected_camera(editor, projection);
     Action::Edit(Edit::Camera(camera, "projection"))
 }

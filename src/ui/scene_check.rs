@@ -15,45 +15,45 @@ use crate::words::counted;
 /// Width of the list in points.
 const WIDTH: f32 = 420.0;
 /// Greatest number of visible rows.
-const MOST_ROWS: f32 = 12.0;
+const MAX_ROWS: f32 = 12.0;
 
 /// The hints about a state of the scene.
 #[derive(Default)]
 pub struct SceneCheck {
-    of: Option<u64>,
+    revision: Option<u64>,
     /// Hints that do not depend on the camera, and the scene they are about.
-    things: Option<(Arc<Scene>, Vec<Hint>)>,
+    scene_hints: Option<(Arc<Scene>, Vec<Hint>)>,
     hints: Vec<Hint>,
     /// Whether a hint about clipping was added for this state.
-    is_clipped: bool,
+    has_clipping_hint: bool,
 }
 
 /// Share of clipped pixels in the picture above which a hint is given.
-const CLIPPED: f64 = 0.05;
+const MAX_CLIPPED_SHARE: f64 = 0.05;
 
 impl SceneCheck {
     /// Checks the scene again if it has changed, unless something is being dragged.
     pub fn update(&mut self, editor: &Editor, is_busy: bool) {
-        if self.of != Some(editor.revision()) && !is_busy {
-            self.of = Some(editor.revision());
+        if self.revision != Some(editor.revision()) && !is_busy {
+            self.revision = Some(editor.revision());
             let scene = editor.scene();
-            let known = self.things.take();
+            let cached = self.scene_hints.take();
             // Finding coincident surfaces takes long, and does not depend on the camera.
-            let known = known.filter(|(of, _)| of.has_same_things(scene));
-            let found = known.map_or_else(|| thing_hints(scene), |(_, found)| found);
+            let cached = cached.filter(|(of, _)| of.has_same_things(scene));
+            let found = cached.map_or_else(|| thing_hints(scene), |(_, found)| found);
             self.hints = camera_hints(scene);
             self.hints.extend_from_slice(&found);
-            self.things = Some((Arc::clone(scene), found));
-            self.is_clipped = false;
+            self.scene_hints = Some((Arc::clone(scene), found));
+            self.has_clipping_hint = false;
         }
     }
 
     /// Takes the share of the finished picture of the scene that is at full brightness, 0–1.
     pub fn take_clipped(&mut self, clipped: f64) {
-        if clipped <= CLIPPED || self.is_clipped {
+        if clipped <= MAX_CLIPPED_SHARE || self.has_clipping_hint {
             return;
         }
-        self.is_clipped = true;
+        self.has_clipping_hint = true;
         self.hints.push(Hint {
             words: format!(
                 "{:.0} % of the picture is at full brightness: less light shows more",
@@ -81,16 +81,16 @@ impl SceneCheck {
             .accessible_name(words)
             .hint("Probable mistakes in the scene");
         Popup::menu(&button).width(WIDTH).show(|ui| {
-            let area = ScrollArea::vertical().max_height(MOST_ROWS * ROW);
+            let area = ScrollArea::vertical().max_height(MAX_ROWS * ROW);
             area.show_rows(ui, ROW, count, |ui, rows| {
                 for hint in &self.hints[rows] {
                     ui.horizontal(|ui| {
                         ui.label(&hint.words);
                         ui.add_space(GRID);
                         if ui.button("Select").clicked() {
-                            out.select(selection(hint.about));
+                            out.select(selection_of(hint.about));
                         }
-                        if let Some((word, edit)) = way_out(scene, hint)
+                        if let Some((word, edit)) = fix_for(scene, hint)
                             && ui.button(word).clicked()
                         {
                             out.edit(edit);
@@ -102,7 +102,7 @@ impl SceneCheck {
     }
 }
 
-fn selection(about: About) -> Selection {
+fn selection_of(about: About) -> Selection {
     match about {
         About::Camera => Selection::Camera,
         About::World => Selection::World,
@@ -113,7 +113,7 @@ fn selection(about: About) -> Selection {
 }
 
 /// Returns a fix for a hint: unused color packs can be deleted, and duplicates can be hidden.
-fn way_out(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
+fn fix_for(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
         About::Pack(index) => Some(("Delete", Edit::Delete(vec![Item::pack(index)]))),
         About::Object(index) if hint.is_twice => {

@@ -10,7 +10,7 @@ use crate::export::{ExportError, save_image};
 use crate::image::{Film, Image};
 
 /// Frames to wait after the traced picture is finished, so that the panels have their final size.
-const CALM_FRAMES: u32 = 8;
+const SETTLED_FRAMES: u32 = 8;
 
 /// A screenshot requested on the command line.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub struct Screenshot {
     path: PathBuf,
     /// Receives the outcome.
     outcome: Sender<Result<(), ExportError>>,
-    calm: u32,
+    settled_frames: u32,
     pixels: Option<Receiver<Arc<ColorImage>>>,
 }
 
@@ -26,15 +26,15 @@ impl Screenshot {
     /// Creates a screenshot of the window, taken when its traced picture is complete. The outcome of writing it arrives
     /// in the channel.
     pub fn new(path: PathBuf) -> (Self, Receiver<Result<(), ExportError>>) {
-        let (outcome, told) = channel();
+        let (outcome, outcome_receiver) = channel();
         (
             Self {
                 path,
                 outcome,
-                calm: 0,
+                settled_frames: 0,
                 pixels: None,
             },
-            told,
+            outcome_receiver,
         )
     }
 
@@ -42,8 +42,12 @@ impl Screenshot {
     /// whether it is done.
     pub fn tick(&mut self, ctx: &Context, is_settled: bool) -> bool {
         ctx.request_repaint();
-        self.calm = if is_settled { self.calm + 1 } else { 0 };
-        if self.pixels.is_none() && self.calm > CALM_FRAMES {
+        self.settled_frames = if is_settled {
+            self.settled_frames + 1
+        } else {
+            0
+        };
+        if self.pixels.is_none() && self.settled_frames > SETTLED_FRAMES {
             let (sender, receiver) = channel();
             self.pixels = Some(receiver);
             ctx.request_screenshot(move |image| {

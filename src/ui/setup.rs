@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::dialogs::{Dialogs, Native};
+use super::dialogs::{Dialogs, NativeDialogs};
 use super::screenshot::Screenshot;
 use super::start::StartWatch;
 
@@ -32,7 +32,7 @@ impl Setup {
     pub fn native(scene: Option<PathBuf>) -> Self {
         Self {
             scene,
-            dialogs: Box::new(Native),
+            dialogs: Box::new(NativeDialogs),
             data_folder: eframe::storage_dir(APP_ID),
             screenshot: None,
             start: None,

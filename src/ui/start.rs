@@ -23,7 +23,7 @@ pub struct StartStats {
 #[derive(Debug)]
 pub struct StartWatch {
     since: Instant,
-    told: Sender<StartStats>,
+    sender: Sender<StartStats>,
     /// Milliseconds until the first frame was drawn, and whether the last frame had a picture.
     drawn: Option<(f64, bool)>,
 }
@@ -31,9 +31,16 @@ pub struct StartWatch {
 impl StartWatch {
     /// Creates a watch for a start that began at this time. The result arrives in the channel.
     pub fn new(since: Instant) -> (Self, Receiver<StartStats>) {
-        let (told, stats) = channel();
+        let (sender, stats) = channel();
         let drawn = None;
-        (Self { since, told, drawn }, stats)
+        (
+            Self {
+                since,
+                sender,
+                drawn,
+            },
+            stats,
+        )
     }
 
     /// Called once a frame; `has_picture` says whether it shows a traced picture. Returns true in the frame after the
@@ -50,7 +57,7 @@ impl StartWatch {
         self.drawn = Some((window_ms, has_picture));
         if had_picture {
             // The receiver is read after the window has closed.
-            let _ = self.told.send(StartStats {
+            let _ = self.sender.send(StartStats {
                 window_ms,
                 picture_ms: ms,
                 resident_mib: resident_bytes().map(|bytes| bytes as f64 / f64::from(1 << 20)),

@@ -13,22 +13,22 @@ use crate::scene::Scene;
 use crate::worker::Activity;
 
 /// Time after which the progress of a still picture is shown.
-const PATIENCE: Duration = Duration::from_millis(100);
+const PROGRESS_DELAY: Duration = Duration::from_millis(100);
 /// Time after which the remaining time is shown.
-const FORECAST: Duration = Duration::from_secs(1);
+const REMAINING_DELAY: Duration = Duration::from_secs(1);
 
 /// Time after which a picture that does not appear must have a scene that takes long to prepare.
-const READY: Duration = Duration::from_millis(500);
+const PREPARING_DELAY: Duration = Duration::from_millis(500);
 
 /// Greatest share of the line for what the tracer is doing.
-const MOST: f32 = 0.6;
+const MAX_SHARE: f32 = 0.6;
 /// Height of widgets in the line: less than that of the line, which must not change.
-const BAR: f32 = 16.0;
+const WIDGET_HEIGHT: f32 = 16.0;
 
 /// Shows the line. The picture on screen is given by its description and its revision.
 pub fn show(
     ui: &mut Ui,
-    (picture, shown): (&str, Option<u64>),
+    (picture, shown_revision): (&str, Option<u64>),
     activity: &Activity,
     note: Option<String>,
     (check, scene): (&SceneCheck, &Scene),
@@ -37,12 +37,12 @@ pub fn show(
     // The height must be the same with and without hints.
     ui.set_min_height(ui.available_height());
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        ui.spacing_mut().interact_size.y = BAR;
+        ui.spacing_mut().interact_size.y = WIDGET_HEIGHT;
         ui.spacing_mut().button_padding.y = 0.0;
-        let most = ui.available_width() * MOST;
+        let max_width = ui.available_width() * MAX_SHARE;
         ui.scope(|ui| {
-            ui.set_max_width(most);
-            doing(ui, activity, shown, note, out);
+            ui.set_max_width(max_width);
+            show_activity(ui, activity, shown_revision, note, out);
         });
         check.show(ui, scene, out);
         // The description is truncated if there is not enough room.
@@ -54,10 +54,10 @@ pub fn show(
 }
 
 /// Shows what the tracer is doing, or `note` if it is idle.
-fn doing(
+fn show_activity(
     ui: &mut Ui,
     activity: &Activity,
-    shown: Option<u64>,
+    shown_revision: Option<u64>,
     note: Option<String>,
     out: &mut UiRequests,
 ) {
@@ -66,10 +66,12 @@ fn doing(
             done,
             total,
             elapsed,
-        } if *elapsed >= PATIENCE => {
+        } if *elapsed >= PROGRESS_DELAY => {
             progress(ui, *done, *total, *elapsed, out);
         }
-        Activity::Live { revision, elapsed } if *elapsed >= READY && shown != Some(*revision) => {
+        Activity::Live { revision, elapsed }
+            if *elapsed >= PREPARING_DELAY && shown_revision != Some(*revision) =>
+        {
             ui.weak(format!(
                 "preparing the scene for tracing, {:.1} s",
                 elapsed.as_secs_f64()
@@ -97,18 +99,21 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     {
         out.commands.push(Command::CancelStill);
     }
-    let left = if elapsed >= FORECAST && share > 0.0 {
+    let remaining = if elapsed >= REMAINING_DELAY && share > 0.0 {
         let seconds = elapsed.as_secs_f64() * (1.0 - share) / share;
         format!(" · {} left", time_in_words(seconds))
     } else {
         String::new()
     };
     // Rounded down, and never 100 % before it is done.
-    let text = format!("High-res {:.0} %{left}", (share * 100.0).floor().min(99.0));
+    let text = format!(
+        "High-res {:.0} %{remaining}",
+        (share * 100.0).floor().min(99.0)
+    );
     let text = RichText::new(text).small().color(palette(ui.ctx()).text);
     let bar = ProgressBar::new(share as f32)
         .desired_width(180.0)
-        .desired_height(BAR);
+        .desired_height(WIDGET_HEIGHT);
     ui.add(bar.text(text));
     ui.request_repaint_after(Duration::from_millis(50));
 }

@@ -14,38 +14,38 @@ use crate::plan::Region;
 /// Points of a touchpad that count as one step of a wheel.
 const POINTS_PER_STEP: f32 = 50.0;
 /// Least time between two steps, in seconds.
-const PAUSE: f64 = 0.08;
+const MIN_STEP_INTERVAL: f64 = 0.08;
 
 /// The state of the view of the still picture.
 #[derive(Default)]
 pub struct Still {
     magnifier: Magnifier,
     /// Steps that the wheel has turned since the last change of magnification.
-    turned: f32,
+    wheel_steps: f32,
     /// Time of that change, in seconds.
     stepped_at: f64,
     /// Corner at which a part that is being marked begins.
-    from: Option<Pos2>,
+    mark_start: Option<Pos2>,
     /// Whether the marking was cancelled while its button is still held.
-    is_given_up: bool,
+    is_cancelled: bool,
 }
 
 impl Still {
-    /// Shows one picture pixel per screen pixel; or the whole picture, if that is already so and the picture `is_seen`.
-    pub fn show_actual_size(&mut self, is_seen: bool) {
-        let is_actual = is_seen && self.magnifier.factor == 1;
+    /// Shows one picture pixel per screen pixel; or the whole picture, if that is already so and the picture is shown.
+    pub fn show_actual_size(&mut self, is_shown: bool) {
+        let is_actual = is_shown && self.magnifier.factor == 1;
         self.magnifier = Magnifier::default();
         self.magnifier.factor = u32::from(!is_actual);
     }
 
     /// Resets the view, so that the next picture is shown as a whole.
     pub fn leave(&mut self) {
-        (self.magnifier, self.from) = (Magnifier::default(), None);
+        (self.magnifier, self.mark_start) = (Magnifier::default(), None);
     }
 
     /// Whether a part of the picture is being marked, which Escape cancels.
     pub fn is_marking(&self) -> bool {
-        self.from.is_some()
+        self.mark_start.is_some()
     }
 
     /// Returns the name that is shown on the picture.
@@ -66,18 +66,18 @@ impl Still {
         size: (usize, usize),
     ) -> Response {
         let scale = ui.pixels_per_point();
-        let to = self.magnifier.place(place.rect, size, scale);
-        let response = pictures.screen.show_still(ui, place, to);
+        let drawn_rect = self.magnifier.picture_rect(place.rect, size, scale);
+        let response = pictures.screen.show_still(ui, place, drawn_rect);
         if let Some(at) = response.hover_pos() {
-            self.turned += wheel(ui);
+            self.wheel_steps += wheel(ui);
             let now = ui.input(|input| input.time);
-            if now - self.stepped_at < PAUSE {
+            if now - self.stepped_at < MIN_STEP_INTERVAL {
                 // A single notch of a wheel can arrive as several events.
-                self.turned = 0.0;
-            } else if self.turned.abs() >= 1.0 {
-                let up = self.turned > 0.0;
-                (self.turned, self.stepped_at) = (0.0, now);
-                self.magnifier.turn(up, at, (place.rect, size, scale));
+                self.wheel_steps = 0.0;
+            } else if self.wheel_steps.abs() >= 1.0 {
+                let up = self.wheel_steps > 0.0;
+                (self.wheel_steps, self.stepped_at) = (0.0, now);
+                self.magnifier.zoom_step(up, at, (place.rect, size, scale));
             }
         }
         if response.double_clicked() {
@@ -85,16 +85,16 @@ impl Still {
         }
         let is_shifted = ui.input(|input| input.modifiers.shift);
         if response.drag_started_by(PointerButton::Primary) && is_shifted {
-            self.from = ui.input(|input| input.pointer.press_origin());
+            self.mark_start = ui.input(|input| input.pointer.press_origin());
         }
         if self.is_marking() && ui.input(|input| input.key_pressed(Key::Escape)) {
-            (self.from, self.is_given_up) = (None, true);
+            (self.mark_start, self.is_cancelled) = (None, true);
         }
-        self.is_given_up &= ui.input(|input| input.pointer.any_down());
-        if let Some(from) = self.from {
-            self.mark(ui, (from, to), &response, (pictures, size));
-        } else if response.dragged() && !self.is_given_up {
-            self.magnifier.pan(response.drag_delta(), to);
+        self.is_cancelled &= ui.input(|input| input.pointer.any_down());
+        if let Some(from) = self.mark_start {
+            self.mark(ui, (from, drawn_rect), &response, (pictures, size));
+        } else if response.dragged() && !self.is_cancelled {
+            self.magnifier.pan(response.drag_delta(), drawn_rect);
         }
         response
     }
@@ -102,7 +102,7 @@ impl Still {
     fn mark(
         &mut self,
         ui: &Ui,
-        (from, to): (Pos2, Rect),
+        (from, drawn_rect): (Pos2, Rect),
         response: &Response,
         (pictures, size): (&mut Pictures, (usize, usize)),
     ) {
@@ -114,8 +114,8 @@ impl Still {
                 .rect_stroke(marked, 0, line, StrokeKind::Inside);
             return;
         }
-        self.from = None;
-        if let Some(region) = region(marked, to, size) {
+        self.mark_start = None;
+        if let Some(region) = region(marked, drawn_rect, size) {
             pictures.region = Some(region);
         }
     }
@@ -124,25 +124,26 @@ impl Still {
 /// Returns how far the wheel was turned in this frame, in steps; up is positive.
 fn wheel(ui: &Ui) -> f32 {
     ui.input(|input| {
-        let turned = input.events.iter().map(|event| match event {
+        let wheel_steps = input.events.iter().map(|event| match event {
             Event::MouseWheel { unit, delta, .. } => match unit {
                 MouseWheelUnit::Point => delta.y / POINTS_PER_STEP,
                 MouseWheelUnit::Line | MouseWheelUnit::Page => delta.y.signum(),
             },
             _ => 0.0,
         });
-        turned.sum()
+        wheel_steps.sum()
     })
 }
 
-/// Returns the pixels under a marked rectangle, of a picture of `size` pixels drawn to `to`; `None` if there are none.
-fn region(marked: Rect, to: Rect, size: (usize, usize)) -> Option<Region> {
+/// Returns the pixels under a marked rectangle, of a picture of `size` pixels drawn to `drawn_rect`; `None` if there
+/// are none.
+fn region(marked: Rect, drawn_rect: Rect, size: (usize, usize)) -> Option<Region> {
     let pixel = |at: f32, from: f32, length: f32, count: usize| {
         let share = ((at - from) / length).clamp(0.0, 1.0);
         (f64::from(share) * count as f64).round() as usize
     };
-    let column = |x: f32| pixel(x, to.left(), to.width(), size.0);
-    let row = |y: f32| pixel(y, to.top(), to.height(), size.1);
+    let column = |x: f32| pixel(x, drawn_rect.left(), drawn_rect.width(), size.0);
+    let row = |y: f32| pixel(y, drawn_rect.top(), drawn_rect.height(), size.1);
     let region = Region {
         columns: (column(marked.left()), column(marked.right())),
         rows: (row(marked.top()), row(marked.bottom())),
@@ -158,11 +159,11 @@ mod tests {
 
     #[test]
     fn what_is_marked_are_the_pixels_under_it() {
-        let to = Rect::from_min_size(pos2(-100.0, 50.0), vec2(800.0, 400.0));
+        let drawn_rect = Rect::from_min_size(pos2(-100.0, 50.0), vec2(800.0, 400.0));
         let marked = Rect::from_min_max(pos2(0.0, 150.0), pos2(100.0, 9999.0));
-        let found = region(marked, to, (1600, 800)).expect("some pixels");
+        let found = region(marked, drawn_rect, (1600, 800)).expect("some pixels");
         assert_eq!((found.columns, found.rows), ((200, 400), (200, 800)));
         let outside = Rect::from_min_max(pos2(-300.0, 0.0), pos2(-200.0, 10.0));
-        assert_eq!(region(outside, to, (1600, 800)), None);
+        assert_eq!(region(outside, drawn_rect, (1600, 800)), None);
     }
 }

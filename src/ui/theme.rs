@@ -19,7 +19,7 @@ pub const OUTLINER: (f32, f32) = (188.0, 224.0);
 /// The same for the inspector, whose width does not follow its content.
 pub const INSPECTOR: (f32, f32) = (300.0, 332.0);
 /// Least width of a window in which side panels are first shown at full width.
-pub const WIDE: f32 = 960.0;
+pub const WIDE_WINDOW: f32 = 960.0;
 /// Height of the lab when it is first shown.
 pub const LAB: f32 = 280.0;
 /// Height of the timeline when it is first shown, without tracks.
@@ -151,15 +151,15 @@ const LIGHT: Palette = Palette {
 
 /// Returns the palette of the current theme.
 pub fn palette(ctx: &Context) -> Palette {
-    of(ctx.theme())
+    palette_of(ctx.theme())
 }
 
 /// Returns the palette for lines in a picture, which is mostly dark, whatever the theme.
-pub fn in_picture() -> Palette {
+pub fn picture_palette() -> Palette {
     DARK
 }
 
-fn of(theme: Theme) -> Palette {
+fn palette_of(theme: Theme) -> Palette {
     match theme {
         Theme::Dark => DARK,
         Theme::Light => LIGHT,
@@ -201,7 +201,7 @@ fn restyle(style: &mut Style, theme: Theme) {
 }
 
 fn visuals(theme: Theme) -> Visuals {
-    let p = of(theme);
+    let p = palette_of(theme);
     let mut visuals = theme.default_visuals();
     visuals.override_text_color = None;
     visuals.weak_text_color = Some(p.muted);
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn text_is_readable_in_both_themes() {
         for theme in [Theme::Dark, Theme::Light] {
-            let p = of(theme);
+            let p = palette_of(theme);
             let mut pairs = vec![
                 ("accent on panel", p.accent, p.panel),
                 ("accent on selected", p.accent, p.selected),

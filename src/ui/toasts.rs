@@ -6,19 +6,19 @@ use super::icons;
 use super::theme::{GRID, palette};
 use crate::editor::Message;
 
-/// Lifetime of messages that are not errors, in seconds: the base, the reading time per byte, and the maximum.
-const LIFETIME: f64 = 4.0;
-const PER_LETTER: f64 = 0.06;
-const LONGEST: f64 = 30.0;
+/// Lifetime of messages that are not errors, in seconds: the base, the reading time per character, and the maximum.
+const BASE_LIFETIME: f64 = 4.0;
+const SECONDS_PER_CHARACTER: f64 = 0.06;
+const MAX_LIFETIME: f64 = 30.0;
 /// Width of a message in points: the excerpt of a refused file fits in.
 const WIDTH: f32 = 560.0;
 /// Least width of a message that makes room for a window, and the width left free for margins and gaps, in points.
-const LEAST_WIDTH: f32 = 200.0;
-const BESIDE: f32 = 6.0 * GRID;
+const MIN_WIDTH: f32 = 200.0;
+const SIDE_MARGINS: f32 = 6.0 * GRID;
 /// Greatest height of a message's sentence, as a share of the window's height.
-const HIGHEST: f32 = 0.25;
+const MAX_HEIGHT_SHARE: f32 = 0.25;
 /// Most messages on screen; older ones are removed.
-const MOST: usize = 3;
+const MAX_TOASTS: usize = 3;
 
 /// The messages on screen.
 #[derive(Debug, Default)]
@@ -36,8 +36,8 @@ struct Toast {
 impl Toast {
     /// Time at which it disappears by itself.
     fn end(&self) -> f64 {
-        let reading = PER_LETTER * self.message.text.chars().count() as f64;
-        self.since + (LIFETIME + reading).min(LONGEST)
+        let reading = SECONDS_PER_CHARACTER * self.message.text.chars().count() as f64;
+        self.since + (BASE_LIFETIME + reading).min(MAX_LIFETIME)
     }
 }
 
@@ -54,9 +54,9 @@ impl Toasts {
             self.shown.retain(|toast| toast.message != message);
             self.shown.push(Toast { message, since });
         }
-        while self.shown.len() > MOST {
+        while self.shown.len() > MAX_TOASTS {
             // Errors stay until they are dismissed, if possible, but the newest message is always shown.
-            let mut older = self.shown[..MOST].iter();
+            let mut older = self.shown[..MAX_TOASTS].iter();
             let oldest = older.position(|toast| !toast.message.is_error);
             self.shown.remove(oldest.unwrap_or(0));
         }
@@ -75,19 +75,20 @@ impl Toasts {
         if let Some(seconds) = next.reduce(f64::min) {
             ctx.request_repaint_after_secs(seconds as f32);
         }
-        let whole = ctx.content_rect();
-        let most = WIDTH.min(whole.width() * 0.45);
-        let beside = |right: f32| window.map_or(most, |window| right - window.right() - BESIDE);
+        let window_area = ctx.content_rect();
+        let max_width = WIDTH.min(window_area.width() * 0.45);
+        let room_beside =
+            |right: f32| window.map_or(max_width, |window| right - window.right() - SIDE_MARGINS);
         // If the picture has no room beside the window, the messages may cover the panel on the right.
         let mut corner = area.max;
-        if beside(corner.x) < LEAST_WIDTH && beside(whole.right()) >= LEAST_WIDTH {
-            corner.x = whole.right();
+        if room_beside(corner.x) < MIN_WIDTH && room_beside(window_area.right()) >= MIN_WIDTH {
+            corner.x = window_area.right();
         }
-        let room = beside(corner.x);
-        let width = if room < LEAST_WIDTH {
-            most
+        let room = room_beside(corner.x);
+        let width = if room < MIN_WIDTH {
+            max_width
         } else {
-            room.min(most)
+            room.min(max_width)
         };
         let mut height = 2.0 * GRID;
         let mut dismissed = None;
@@ -132,14 +133,14 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
         .show(ui, |ui| {
             ui.set_width(width);
             // A single line is centred on the buttons beside it.
-            let above = (super::theme::ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
+            let padding = (super::theme::ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
             ui.horizontal_top(|ui| {
                 ui.vertical(|ui| {
-                    ui.add_space(above);
+                    ui.add_space(padding);
                     ui.label(icons::text(icon).color(color));
                 });
                 ui.vertical(|ui| {
-                    ui.add_space(above);
+                    ui.add_space(padding);
                     ui.set_width(ui.available_width() - 2.0 * super::theme::ROW - 2.0 * GRID);
                     body(ui, &message.text);
                 });
@@ -158,7 +159,7 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
 fn body(ui: &mut egui::Ui, text: &str) {
     let (sentence, excerpt) = text.split_once('\n').unwrap_or((text, ""));
     // A long quotation scrolls instead of hiding the picture.
-    let height = ui.ctx().content_rect().height() * HIGHEST;
+    let height = ui.ctx().content_rect().height() * MAX_HEIGHT_SHARE;
     let area = ScrollArea::vertical()
         .id_salt("sentence")
         .max_height(height);

@@ -7,9 +7,9 @@ use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, pos2};
 use crate::image::Image;
 
 /// Side of the compared squares, in pixels.
-const SIDE: usize = 64;
+const TILE_SIDE: usize = 64;
 /// Share of changed pixels above which a picture is sent whole: one large upload is cheaper than many small ones.
-const MOSTLY: f64 = 0.5;
+const MAX_CHANGED_SHARE: f64 = 0.5;
 
 /// A rectangle of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,22 +22,22 @@ pub struct PicturePart {
 
 /// Returns the parts in which `new` differs from `old`; `None` if `new` should be sent whole, because its size or
 /// most of it has changed.
-pub fn changes(old: &Image, new: &Image) -> Option<Vec<PicturePart>> {
+pub fn changed_parts(old: &Image, new: &Image) -> Option<Vec<PicturePart>> {
     if (old.width, old.height) != (new.width, new.height) {
         return None;
     }
-    let most = (new.pixels.len() as f64 * MOSTLY) as usize;
+    let max_changed = (new.pixels.len() as f64 * MAX_CHANGED_SHARE) as usize;
     let mut parts: Vec<PicturePart> = Vec::new();
     let mut changed = 0;
-    for top in (0..new.height).step_by(SIDE) {
-        let rows = top..(top + SIDE).min(new.height);
-        for left in (0..new.width).step_by(SIDE) {
-            let columns = left..(left + SIDE).min(new.width);
+    for top in (0..new.height).step_by(TILE_SIDE) {
+        let rows = top..(top + TILE_SIDE).min(new.height);
+        for left in (0..new.width).step_by(TILE_SIDE) {
+            let columns = left..(left + TILE_SIDE).min(new.width);
             if !differ(old, new, &columns, &rows) {
                 continue;
             }
             changed += columns.len() * rows.len();
-            if changed > most {
+            if changed > max_changed {
                 return None;
             }
             match parts.last_mut() {
@@ -68,13 +68,13 @@ pub fn paint(painter: &Painter, texture: &TextureHandle, place: Rect) {
 }
 
 /// Converts a whole picture for the graphics card.
-pub fn whole(image: &Image) -> ColorImage {
+pub fn to_color_image(image: &Image) -> ColorImage {
     let pixels = image.pixels.iter().copied().map(color);
     ColorImage::new([image.width, image.height], pixels.collect())
 }
 
 /// Converts a part of a picture for the graphics card.
-pub fn piece(image: &Image, part: &PicturePart) -> ColorImage {
+pub fn part_to_color_image(image: &Image, part: &PicturePart) -> ColorImage {
     let rows = part.rows.clone();
     let pixels = rows.flat_map(|row| {
         let start = row * image.width;
@@ -99,11 +99,11 @@ mod tests {
     #[test]
     fn another_size_is_sent_whole_and_the_same_picture_not_at_all() {
         let old = Image::new(300, 200);
-        assert_eq!(changes(&old, &Image::new(200, 300)), None);
-        assert_eq!(changes(&old, &old), Some(Vec::new()));
+        assert_eq!(changed_parts(&old, &Image::new(200, 300)), None);
+        assert_eq!(changed_parts(&old, &old), Some(Vec::new()));
         let mut new = old.clone();
         new.pixels.fill([1; 4]);
-        assert_eq!(changes(&old, &new), None);
+        assert_eq!(changed_parts(&old, &new), None);
     }
 
     #[test]
@@ -117,7 +117,7 @@ mod tests {
             columns: 0..128,
             rows: 192..200,
         };
-        assert_eq!(changes(&old, &new), Some(vec![part]));
+        assert_eq!(changed_parts(&old, &new), Some(vec![part]));
     }
 
     proptest! {
@@ -130,18 +130,18 @@ mod tests {
                 let place = (place * new.pixels.len() as f64) as usize;
                 new.pixels[place] = [shade; 4];
             }
-            let mut card = whole(&old);
-            match changes(&old, &new) {
-                None => card = whole(&new),
+            let mut card = to_color_image(&old);
+            match changed_parts(&old, &new) {
+                None => card = to_color_image(&new),
                 Some(parts) => for part in parts {
-                    let piece = piece(&new, &part);
+                    let piece = part_to_color_image(&new, &part);
                     for (row, pixels) in part.rows.clone().zip(piece.pixels.chunks(piece.size[0])) {
                         let start = row * size.0 + part.columns.start;
                         card.pixels[start..start + pixels.len()].copy_from_slice(pixels);
                     }
                 }
             }
-            prop_assert_eq!(card.pixels, whole(&new).pixels);
+            prop_assert_eq!(card.pixels, to_color_image(&new).pixels);
         }
     }
 }

@@ -10,7 +10,7 @@ use egui::{
 use super::hint::Hinted as _;
 use super::icons;
 use super::theme::{GRID, ROW, palette};
-use super::upload::{changes, piece, whole};
+use super::upload::{changed_parts, part_to_color_image, to_color_image};
 use crate::image::Image;
 use crate::plan::Region;
 use crate::scene::{Sampling, Scene};
@@ -28,11 +28,11 @@ const SHARP: TextureOptions = TextureOptions {
 /// The newest picture of each kind, as a texture on the graphics card.
 #[derive(Default)]
 pub struct Display {
-    live: Option<Shown>,
-    still: Option<Shown>,
+    live: Option<DisplayedFrame>,
+    still: Option<DisplayedFrame>,
 }
 
-struct Shown {
+struct DisplayedFrame {
     frame: Frame,
     texture: TextureHandle,
 }
@@ -70,27 +70,29 @@ impl Display {
         let side = frame.image.width.max(frame.image.height);
         let step = side.div_ceil(longest).max(1);
         let texture = |image: &Image| match step {
-            1 => whole(image),
-            _ => whole(&image.decimated(step)),
+            1 => to_color_image(image),
+            _ => to_color_image(&image.decimated(step)),
         };
         match place {
             Some(shown) => {
-                let parts = changes(&shown.frame.image, &frame.image);
+                let parts = changed_parts(&shown.frame.image, &frame.image);
                 match parts.filter(|_| step == 1) {
                     None => shown.texture.set(texture(&frame.image), SHARP),
                     Some(parts) => {
                         for part in parts {
                             let place = [part.columns.start, part.rows.start];
-                            shown
-                                .texture
-                                .set_partial(place, piece(&frame.image, &part), SHARP);
+                            shown.texture.set_partial(
+                                place,
+                                part_to_color_image(&frame.image, &part),
+                                SHARP,
+                            );
                         }
                     }
                 }
                 shown.frame = frame;
             }
             None => {
-                *place = Some(Shown {
+                *place = Some(DisplayedFrame {
                     texture: ctx.load_texture(name, texture(&frame.image), SHARP),
                     frame,
                 });
@@ -110,18 +112,18 @@ impl Display {
         self.live.as_ref().map(|shown| &shown.frame)
     }
 
-    /// Draws the still picture to `to`, clipped to the place of pictures. If only a part of it is traced, the newest
+    /// Draws the still picture to `rect`, clipped to the place of pictures. If only a part of it is traced, the newest
     /// live picture is drawn below it.
-    pub fn show_still(&self, ui: &mut Ui, place: Place, to: Rect) -> Response {
+    pub fn show_still(&self, ui: &mut Ui, place: Place, rect: Rect) -> Response {
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         response
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "High-res picture"));
         let painter = ui.painter().with_clip_rect(place.rect);
         if let Some(still) = &self.still {
             if let Some(live) = self.live.as_ref().filter(|_| still.frame.region.is_some()) {
-                paint(&painter, live, to);
+                paint(&painter, live, rect);
             }
-            paint(&painter, still, to);
+            paint(&painter, still, rect);
         }
         frame(ui, place);
         response
@@ -164,20 +166,20 @@ pub fn badge(ui: &mut Ui, place: Place, name: &str) -> bool {
 
 /// Draws a picture. A coarse one has every `step`-th pixel: each is drawn as a square around its own position, so that
 /// nothing moves when the picture becomes finer.
-fn paint(painter: &Painter, shown: &Shown, rect: Rect) {
+fn paint(painter: &Painter, shown: &DisplayedFrame, rect: Rect) {
     let Frame {
         image,
         full_size,
         step,
         ..
     } = &shown.frame;
-    let share = |thin: usize, full: usize| {
-        let covered = (thin * step) as f32;
+    let texture_range = |coarse: usize, full: usize| {
+        let covered = (coarse * step) as f32;
         let half = (step / 2) as f32;
         (half / covered, (full as f32 + half) / covered)
     };
-    let (left, right) = share(image.width, full_size.0);
-    let (top, bottom) = share(image.height, full_size.1);
+    let (left, right) = texture_range(image.width, full_size.0);
+    let (top, bottom) = texture_range(image.height, full_size.1);
     let part = Rect::from_min_max(pos2(left, top), pos2(right, bottom));
     painter.image(shown.texture.id(), rect, part, Color32::WHITE);
 }
@@ -213,11 +215,11 @@ pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
 /// Describes a picture for the status line.
 pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     let (width, height) = frame.full_size;
-    let (thin, low) = (frame.image.width, frame.image.height);
+    let (coarse_width, coarse_height) = (frame.image.width, frame.image.height);
     let size = if frame.step == 1 {
         format!("{width}×{height}")
     } else {
-        format!("{thin}×{low} of {width}×{height}")
+        format!("{coarse_width}×{coarse_height} of {width}×{height}")
     };
     let all = frame.image.pixels.len();
     let pixels = frame.region.map_or(all, Region::pixels).max(1) as f64;

@@ -13,17 +13,17 @@ use crate::ui::rows::to_bytes;
 use crate::worker::Background;
 
 /// Radius of the ring around the point, in points.
-const RING: f32 = 7.0;
+const RING_RADIUS: f32 = 7.0;
 /// Number of decimals shown.
 const DECIMALS: usize = 3;
 /// Scenes with more faces are not planned again just to trace one pixel.
-const MOST_FACES: usize = 500_000;
+const MAX_FACES: usize = 500_000;
 /// Difference up to which an exact colour and that of a picture with 8 bits per channel count as equal.
-const SEEN: f64 = 1.01 / 255.0;
+const COLOR_TOLERANCE: f64 = 1.01 / 255.0;
 
 /// Width of the window, and its distance from the explained point, in points.
 const WIDTH: f32 = 480.0;
-const AWAY: f32 = 60.0;
+const POINT_DISTANCE: f32 = 60.0;
 
 /// The question and its answer.
 #[derive(Default)]
@@ -33,7 +33,7 @@ pub struct Why {
     answer: Option<Explanation>,
     waiting: Background<Explanation>,
     /// Colour of the picture at that point, once it is known.
-    drawn: Option<DVec3>,
+    picture_color: Option<DVec3>,
     /// Task that finds that colour, which takes longer than the answer.
     drawing: Background<Option<DVec3>>,
     /// Whether the window has been positioned.
@@ -45,13 +45,13 @@ impl Why {
     pub fn ask(&mut self, scene: &Arc<Scene>, (origin, direction): (DVec3, DVec3)) {
         self.asked = Some((origin, direction, Arc::clone(scene)));
         let [seen, traced] = [Arc::clone(scene), Arc::clone(scene)];
-        let look = move || explain(&seen, origin, direction);
-        self.waiting = Background::start("glint-why", look);
-        self.drawn = None;
+        let explain_task = move || explain(&seen, origin, direction);
+        self.waiting = Background::start("glint-why", explain_task);
+        self.picture_color = None;
         // For a single pixel, the whole scene is planned.
-        if scene.faces() <= MOST_FACES {
-            let draw = move || drawn(&traced, origin, direction);
-            self.drawing = Background::start("glint-drawn", draw);
+        if scene.faces() <= MAX_FACES {
+            let draw_task = move || drawn(&traced, origin, direction);
+            self.drawing = Background::start("glint-drawn", draw_task);
         }
     }
 
@@ -62,13 +62,13 @@ impl Why {
 
     /// Marks the explained point if it is on a surface; `on_screen` projects it.
     pub fn mark(&self, painter: &Painter, on_screen: impl FnOnce(DVec3) -> Option<Pos2>) {
-        if let Some(Explanation::Surface(lit)) = &self.answer
-            && let Some(at) = on_screen(lit.point)
+        if let Some(Explanation::Surface(terms)) = &self.answer
+            && let Some(at) = on_screen(terms.point)
         {
             let colors = palette(painter.ctx());
             // Visible on both light and dark ground.
-            painter.circle_stroke(at, RING, (3.5, colors.halo));
-            painter.circle_stroke(at, RING, (1.5, colors.on_picture));
+            painter.circle_stroke(at, RING_RADIUS, (3.5, colors.halo));
+            painter.circle_stroke(at, RING_RADIUS, (1.5, colors.on_picture));
         }
     }
 
@@ -79,10 +79,10 @@ impl Why {
 
     /// Asks again if the scene has changed since.
     fn follow(&mut self, scene: &Arc<Scene>) {
-        let Some((origin, direction, of)) = &self.asked else {
+        let Some((origin, direction, asked_scene)) = &self.asked else {
             return;
         };
-        if !of.has_same_look(scene) && !self.is_awaited() {
+        if !asked_scene.has_same_look(scene) && !self.is_awaited() {
             self.ask(scene, (*origin, *direction));
         }
     }
@@ -96,8 +96,8 @@ impl Why {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
-        if let Some(Ok(drawn)) = self.drawing.take() {
-            self.drawn = drawn;
+        if let Some(Ok(picture_color)) = self.drawing.take() {
+            self.picture_color = picture_color;
         }
         if !editor.is_moving() {
             self.follow(editor.shown());
@@ -119,7 +119,7 @@ impl Why {
                     ui.weak("For the complete picture, whatever the view is showing.");
                 }
                 show(ui, answer, 0);
-                show_drawn(ui, answer, self.drawn);
+                show_picture_color(ui, answer, self.picture_color);
             });
         });
         if !is_open {
@@ -135,19 +135,21 @@ fn beside_pointer(ctx: &Context) -> Pos2 {
         ctx.input(|input| input.pointer.latest_pos()),
     );
     let at = at.unwrap_or(room.center());
-    let (left, right) = (at.x - WIDTH - AWAY, at.x + AWAY);
+    let (left, right) = (at.x - WIDTH - POINT_DISTANCE, at.x + POINT_DISTANCE);
     let x = if left > room.left() { left } else { right };
-    Pos2::new(x, room.top() + AWAY)
+    Pos2::new(x, room.top() + POINT_DISTANCE)
 }
 
 /// Shows the colour of the picture if it differs from the explained one.
-fn show_drawn(ui: &mut Ui, explanation: &Explanation, drawn: Option<DVec3>) {
-    let is_other = |drawn: &DVec3| (drawn - explanation.color()).abs().max_element() > SEEN;
-    let Some(drawn) = drawn.filter(is_other) else {
+fn show_picture_color(ui: &mut Ui, explanation: &Explanation, picture_color: Option<DVec3>) {
+    let is_different = |picture_color: &DVec3| {
+        (picture_color - explanation.color()).abs().max_element() > COLOR_TOLERANCE
+    };
+    let Some(picture_color) = picture_color.filter(is_different) else {
         return;
     };
     ui.separator();
-    term(ui, "is the colour in the picture", drawn);
+    term(ui, "is the colour in the picture", picture_color);
     ui.weak("The terms are computed with exact formulas and flat faces: other formulas, single precision or a smooth-shaded mesh may give something else.");
 }
 
@@ -163,33 +165,37 @@ fn show(ui: &mut Ui, explanation: &Explanation, depth: usize) {
                 *color,
             );
         }
-        Explanation::Surface(lit) => show_surface(ui, lit, depth),
+        Explanation::Surface(terms) => show_surface(ui, terms, depth),
     }
 }
 
-fn show_surface(ui: &mut Ui, lit: &ShadingTerms, depth: usize) {
-    let color = Explanation::Surface(Box::new(lit.clone())).color();
+fn show_surface(ui: &mut Ui, terms: &ShadingTerms, depth: usize) {
+    let color = Explanation::Surface(Box::new(terms.clone())).color();
     ui.horizontal(|ui| {
         swatch(ui, color);
         ui.label(RichText::new(channels(color)).monospace());
-        ui.label(RichText::new(&lit.object).strong());
-        ui.weak(format!("uses {}, {} away", lit.pack, number(lit.distance)));
+        ui.label(RichText::new(&terms.object).strong());
+        ui.weak(format!(
+            "uses {}, {} away",
+            terms.pack,
+            number(terms.distance)
+        ));
     });
-    let place = |vector: DVec3| vector.to_array().map(number).join(", ");
+    let coordinates = |vector: DVec3| vector.to_array().map(number).join(", ");
     ui.weak(format!(
         "at {}, normal {}",
-        place(lit.point),
-        place(lit.normal)
+        coordinates(terms.point),
+        coordinates(terms.normal)
     ));
-    if lit.is_smooth {
+    if terms.is_smooth {
         ui.weak("The picture shades this mesh smoothly; these are the numbers of the flat face.");
     }
     ui.indent(("why", depth), |ui| {
-        term(ui, "ambient intensity · ambient", lit.ambient);
-        for share in &lit.lights {
+        term(ui, "ambient intensity · ambient", terms.ambient);
+        for share in &terms.lights {
             show_light(ui, share);
         }
-        if let Some((filter, seen)) = &lit.mirror {
+        if let Some((filter, seen)) = &terms.mirror {
             let what = format!(
                 "mirror: sum of intensities · specular = {}",
                 channels(*filter)

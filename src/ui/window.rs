@@ -25,7 +25,7 @@ const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
 /// The reason why the window could not do what it was opened for.
 #[derive(Debug, thiserror::Error)]
-pub enum NoWindow {
+pub enum WindowError {
     /// No window could be opened, for this reason.
     #[error("{0}")]
     Unavailable(String),
@@ -39,13 +39,14 @@ pub enum NoWindow {
 /// be selected.
 ///
 /// # Errors
-/// [`NoWindow::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The libraries used here
-/// report some of these by a panic, which is caught and explained; a panic after the window was opened is passed on.
+/// [`WindowError::Unavailable`] if there is no display, no OpenGL, or a system library is missing. The libraries used
+/// here report some of these by a panic, which is caught and explained; a panic after the window was opened is passed
+/// on.
 pub fn run(
     scene: Option<PathBuf>,
     screenshot: Option<PathBuf>,
     (exports, select): (bool, Vec<String>),
-) -> Result<(), NoWindow> {
+) -> Result<(), WindowError> {
     let (screenshot, outcome) = screenshot.map(Screenshot::new).unzip();
     let persist_window = screenshot.is_none();
     let setup = match screenshot {
@@ -60,7 +61,7 @@ pub fn run(
     };
     open(setup, persist_window)?;
     match outcome.map(|outcome| outcome.try_recv()) {
-        Some(Ok(Err(error))) => Err(NoWindow::Screenshot(error)),
+        Some(Ok(Err(error))) => Err(WindowError::Screenshot(error)),
         _ => Ok(()),
     }
 }
@@ -69,8 +70,11 @@ pub fn run(
 /// that has cost since the given time; `None` if it was closed before.
 ///
 /// # Errors
-/// [`NoWindow::Unavailable`] as from [`run`].
-pub fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<Option<StartStats>, NoWindow> {
+/// [`WindowError::Unavailable`] as from [`run`].
+pub fn time_start(
+    scene: Option<PathBuf>,
+    since: Instant,
+) -> Result<Option<StartStats>, WindowError> {
     let (start, stats) = StartWatch::new(since);
     let setup = Setup {
         data_folder: None,
@@ -81,9 +85,9 @@ pub fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<Option<Start
     Ok(stats.try_recv().ok())
 }
 
-fn open(setup: Setup, persist_window: bool) -> Result<(), NoWindow> {
+fn open(setup: Setup, persist_window: bool) -> Result<(), WindowError> {
     let is_open = Arc::new(AtomicBool::new(false));
-    let quiet = Quiet::until(Arc::clone(&is_open));
+    let silenced_panics = SilencedPanics::until(Arc::clone(&is_open));
     let result = catch_unwind(AssertUnwindSafe(|| {
         let is_open = Arc::clone(&is_open);
         eframe::run_native(
@@ -95,12 +99,16 @@ fn open(setup: Setup, persist_window: bool) -> Result<(), NoWindow> {
             }),
         )
     }));
-    drop(quiet);
+    drop(silenced_panics);
     match result {
         Ok(Ok(())) => Ok(()),
-        Ok(Err(error)) => Err(NoWindow::Unavailable(plainly(&error.to_string()))),
+        Ok(Err(error)) => Err(WindowError::Unavailable(readable_reason(
+            &error.to_string(),
+        ))),
         Err(panic) if is_open.load(Ordering::Relaxed) => std::panic::resume_unwind(panic),
-        Err(panic) => Err(NoWindow::Unavailable(plainly(panic_text(panic.as_ref())))),
+        Err(panic) => Err(WindowError::Unavailable(readable_reason(panic_text(
+            panic.as_ref(),
+        )))),
     }
 }
 
@@ -130,30 +138,30 @@ fn options(persist_window: bool) -> NativeOptions {
 type PanicHook = Box<dyn Fn(&std::panic::PanicHookInfo<'_>) + Send + Sync>;
 
 /// Silences panics until the window is open: they are explained in words instead.
-struct Quiet(Arc<PanicHook>);
+struct SilencedPanics(Arc<PanicHook>);
 
-impl Quiet {
+impl SilencedPanics {
     fn until(is_open: Arc<AtomicBool>) -> Self {
-        let usual = Arc::new(std::panic::take_hook());
-        let hook = Arc::clone(&usual);
+        let previous_hook = Arc::new(std::panic::take_hook());
+        let hook = Arc::clone(&previous_hook);
         std::panic::set_hook(Box::new(move |info| {
             if is_open.load(Ordering::Relaxed) {
                 hook(info);
             }
         }));
-        Self(usual)
+        Self(previous_hook)
     }
 }
 
-impl Drop for Quiet {
+impl Drop for SilencedPanics {
     fn drop(&mut self) {
-        let usual = Arc::clone(&self.0);
-        std::panic::set_hook(Box::new(move |info| usual(info)));
+        let previous_hook = Arc::clone(&self.0);
+        std::panic::set_hook(Box::new(move |info| previous_hook(info)));
     }
 }
 
 /// Returns an error message of the window library for people: one line, without positions in its source.
-fn plainly(text: &str) -> String {
+fn readable_reason(text: &str) -> String {
     if text.contains("WAYLAND_DISPLAY nor") {
         return "there is no display".to_owned();
     }
@@ -169,21 +177,21 @@ fn plainly(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::plainly;
+    use super::readable_reason;
 
     #[test]
     fn reasons_are_readable() {
         let x11 = "winit EventLoopError: os error at /a/b/winit/mod.rs:788: Failed to load one of xlib's shared libraries";
         assert_eq!(
-            plainly(x11),
+            readable_reason(x11),
             "Failed to load one of xlib's shared libraries"
         );
         assert_eq!(
-            plainly("Library libxkbcommon-x11.so could\n not be loaded."),
+            readable_reason("Library libxkbcommon-x11.so could\n not be loaded."),
             "Library libxkbcommon-x11.so could not be loaded"
         );
         assert_eq!(
-            plainly("Found no glutin configs matching the template: …"),
+            readable_reason("Found no glutin configs matching the template: …"),
             "no OpenGL driver was found"
         );
     }

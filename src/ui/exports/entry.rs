@@ -12,7 +12,7 @@ use crate::export::Sequence;
 use crate::files::absolute;
 use crate::ui::pictures::Pictures;
 use crate::ui::theme::THUMB;
-use crate::ui::upload::whole;
+use crate::ui::upload::to_color_image;
 use crate::words::counted;
 use crate::worker::ExportState;
 
@@ -193,13 +193,13 @@ impl Entry {
         let (made_for, texture) = self.thumb.get_or_insert_with(|| {
             let load = |name| {
                 ui.ctx()
-                    .load_texture(name, whole(image), TextureOptions::LINEAR)
+                    .load_texture(name, to_color_image(image), TextureOptions::LINEAR)
             };
             (written, load("exported"))
         });
         if *made_for != written {
             *made_for = written;
-            texture.set(whole(image), TextureOptions::LINEAR);
+            texture.set(to_color_image(image), TextureOptions::LINEAR);
         }
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
     }

@@ -17,7 +17,7 @@ use crate::ui::commands::Command;
 use crate::ui::dialogs::Ask;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
-use crate::ui::number::{Field, lone};
+use crate::ui::number::{Field, drag_unlabelled};
 use crate::ui::prompts::typed_path;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::ROW;
@@ -392,7 +392,7 @@ fn picture(ui: &mut Ui, settings: &mut Settings) {
             speed: None,
         };
         let mut pixels = f64::from(*side);
-        lone(ui, &field, &mut pixels);
+        drag_unlabelled(ui, &field, &mut pixels);
         *side = pixels.round() as u32;
     }
     settings.set_size(size);
@@ -423,7 +423,7 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
         range: FRAME_RATES,
         speed: Some(0.1),
     };
-    lone(ui, &field, &mut fps);
+    drag_unlabelled(ui, &field, &mut fps);
     settings.set_fps(fps);
     ui.weak("video");
     for video in std::iter::once(None).chain(Video::ALL.map(Some)) {

@@ -121,7 +121,7 @@ impl Forecast {
         editor: &Editor,
         pictures: &Pictures,
     ) {
-        let frame = pictures.whole(editor);
+        let frame = pictures.complete_frame(editor);
         // A picture of 64 pixels says little about larger ones, and during playback the estimate is not urgent.
         let is_wanted = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
         let Some(frame) = frame.filter(|_| is_wanted && !self.measuring.is_awaited()) else {

@@ -27,7 +27,7 @@ pub use self::kept::KeptSettings;
 use self::kept::SettingsOwner;
 use self::order::{EXPORT_TOPIC, ExportOrder, UNSTORED_TOPIC};
 use self::progress::seconds_left;
-use super::interchange::check_whole;
+use super::interchange::check_meshes;
 use super::pictures::Pictures;
 use super::requests::UiRequests;
 use super::status::time_in_words;
@@ -36,7 +36,7 @@ use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
-use crate::ui::prompts::primary;
+use crate::ui::prompts::primary_button;
 
 /// Space left free below the list of exports, in points.
 const LIST_MARGIN: f32 = 2.0 * GRID;
@@ -287,7 +287,7 @@ impl Exports {
             }
         }
         let can_start = sequence.is_ok() && !is_being_written;
-        let start = ui.add_enabled_ui(can_start, |ui| primary(ui, "Export"));
+        let start = ui.add_enabled_ui(can_start, |ui| primary_button(ui, "Export"));
         let start = start.inner;
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
@@ -309,7 +309,7 @@ impl Exports {
         let cached = self.sequence.take();
         let cached = cached.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
         let (.., sequence) = self.sequence.insert(cached.unwrap_or_else(|| {
-            let made = check_whole(scene)
+            let made = check_meshes(scene)
                 .and_then(|()| settings.sequence(scene).map_err(|error| error.to_string()));
             (settings.clone(), Arc::clone(scene), made)
         }));

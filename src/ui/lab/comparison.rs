@@ -2,7 +2,7 @@
 
 use egui::{Context, Response, Sense, TextureHandle, TextureOptions, Ui};
 
-use super::super::upload::{paint, whole};
+use super::super::upload::{paint, to_color_image};
 use super::super::viewport::Place;
 use crate::image::Image;
 
@@ -122,7 +122,7 @@ impl Comparison {
         if self.shown == Some(key) {
             return;
         }
-        let image = whole(&compose(picture, reference, key.1));
+        let image = to_color_image(&compose(picture, reference, key.1));
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::NEAREST),
             None => {

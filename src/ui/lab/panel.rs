@@ -18,7 +18,7 @@ use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
 use crate::machine::processor;
 use crate::scene::{Render, Scene};
 use crate::trace::Threads;
-use crate::ui::prompts::primary;
+use crate::ui::prompts::primary_button;
 use crate::words::counted;
 use crate::worker::Background;
 
@@ -273,7 +273,7 @@ impl Lab {
             ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
             ui.weak("Every rendering method as a dot: how long it takes on this scene, and how large its error is. Measuring the demo takes half a minute.");
             ui.add_space(GRID);
-            if primary(ui, "Measure the scene").clicked() {
+            if primary_button(ui, "Measure the scene").clicked() {
                 request = Some(self.measure(editor));
             }
         });

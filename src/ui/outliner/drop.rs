@@ -6,7 +6,7 @@ use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
 use crate::editor::{Arrangement, Edit, Editor, Item, ItemKind, Selection};
-use crate::ui::pack_drag::dressed;
+use crate::ui::pack_drag::assign_pack_edit;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 
@@ -49,7 +49,7 @@ pub fn accept_drop(
         .as_ref()
         .is_some_and(|dragged| assigns_pack(dragged));
     let edit = match dragged {
-        Some(dragged) if assigns_pack => dressed(editor, *dragged, item),
+        Some(dragged) if assigns_pack => assign_pack_edit(editor, *dragged, item),
         // While filtering, groups are not listed, so nothing leaves its group or enters another.
         Some(dragged) if is_filtered && !are_in_one_group(editor, *dragged, item) => None,
         Some(dragged) => put_beside(editor, *dragged, to),

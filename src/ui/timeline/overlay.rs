@@ -10,7 +10,7 @@ use super::strip::{dragged_keys, selection_after_click};
 use crate::editor::{Action, Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Projection};
 use crate::ui::requests::UiRequests;
-use crate::ui::theme::{Palette, in_picture};
+use crate::ui::theme::{Palette, picture_palette};
 use crate::ui::tools::Screen;
 use crate::worker::Question;
 
@@ -60,7 +60,7 @@ impl Overlay {
         };
         self.update(editor, out);
         let painter = ui.painter().with_clip_rect(view);
-        let colors = in_picture();
+        let colors = picture_palette();
         let thin = Stroke::new(1.0, colors.text.gamma_multiply(0.6));
         let recorded = self.recorded.iter().map(|&point| screen.place(point));
         for pair in recorded.collect::<Vec<_>>().windows(2) {

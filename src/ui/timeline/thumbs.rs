@@ -13,7 +13,7 @@ use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, THUMB, palette};
-use crate::ui::upload::{paint, whole};
+use crate::ui::upload::{paint, to_color_image};
 use crate::worker::ThumbnailJob;
 
 /// Name of the shot's thumbnail; those of keys are named by index.
@@ -40,7 +40,7 @@ impl Thumbs {
     /// Takes over finished thumbnails.
     pub fn take(&mut self, ctx: &Context, pictures: Vec<(u64, Image)>) {
         for (name, image) in pictures {
-            let picture = whole(&image);
+            let picture = to_color_image(&image);
             let texture = ctx.load_texture("small picture", picture, TextureOptions::LINEAR);
             if name == SHOT {
                 self.shot = Some(texture);

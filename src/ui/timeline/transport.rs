@@ -12,7 +12,7 @@ use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::inspector::replaced_keys_message;
-use crate::ui::number::{Field, lone};
+use crate::ui::number::{Field, drag_unlabelled};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::words::counted;
@@ -139,7 +139,7 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         range: 1.0..=last,
         speed: Some(0.2),
     };
-    lone(ui, &field, &mut frame);
+    drag_unlabelled(ui, &field, &mut frame);
     if frame != before {
         out.time(Time::Seek(animation.time_of(frame.round() as u64)));
     }
@@ -191,11 +191,11 @@ fn rates(
 ) {
     let number = |ui: &mut Ui, field: &Field, value: &mut f64| {
         if !are_named {
-            return lone(ui, field, value);
+            return drag_unlabelled(ui, field, value);
         }
         ui.horizontal(|ui| {
             ui.weak(field.name);
-            lone(ui, field, value);
+            drag_unlabelled(ui, field, value);
         });
     };
     ui.toggle_value(graph, "Speed")

@@ -10,7 +10,7 @@ use super::screen::Screen;
 use super::subject::{Movable, combine};
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
-use crate::ui::number::read_number;
+use crate::ui::number::parse_number;
 
 /// Angle to which rotations snap, in degrees.
 const SNAP_DEGREES: f64 = 15.0;
@@ -87,7 +87,7 @@ impl Grip {
     /// Describes what is wrong with the typed text, if anything.
     pub fn typing_error(&self) -> Option<String> {
         let is_size = matches!(self.handle, Handle::Radius | Handle::Size);
-        match read_number(&self.typed) {
+        match parse_number(&self.typed) {
             None => Some(format!("{} is not a number yet", self.typed)),
             Some(number) if is_size && number <= 0.0 => {
                 Some(format!("{} is not greater than 0", self.typed))
@@ -139,7 +139,7 @@ impl Grip {
     pub fn pull(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
         let unit = screen.unit_at(self.middle);
         let round = |value: f64| rounded(value, unit, pull.snaps);
-        let typed = read_number(&self.typed);
+        let typed = parse_number(&self.typed);
         match self.handle {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];

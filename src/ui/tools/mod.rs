@@ -29,7 +29,7 @@ use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question};
 use self::subject::Movable;
 use super::commands::Command;
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
-use super::pack_drag::{dressed, dropped_pack};
+use super::pack_drag::{assign_pack_edit, dropped_pack};
 use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
@@ -198,7 +198,7 @@ impl Tools {
         let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
         let item = seen.map(item_of);
         if let Some(pack) = dropped {
-            let edit = item.and_then(|item| dressed(view.editor, pack, item));
+            let edit = item.and_then(|item| assign_pack_edit(view.editor, pack, item));
             out.actions.extend(edit.map(Action::Edit));
         } else {
             let item = item.into_iter().collect();
