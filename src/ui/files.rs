@@ -409,7 +409,7 @@ impl Files {
                 editor.report_error_in(Ask::ImportMesh.title(), why);
             }
             ReadOutcome::ReloadedMeshes(sources) if !reading.is_for_other_document(editor) => {
-                editor.take_meshes(sources)
+                editor.take_meshes(sources);
             }
             ReadOutcome::ReloadedMeshes(_) => {}
             ReadOutcome::Nothing => editor.report_error(reading.describe_fault()),
