@@ -12,7 +12,7 @@ use rayon::iter::{
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
-use super::components::{first_of_parts, volume};
+use super::components::{first_of_components, volume};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::measures;
 use crate::mesh::Triangles;
@@ -42,7 +42,7 @@ pub struct PackedMesh<R> {
     /// that they have without rotation.
     faces: Arc<[[u32; 3]]>,
     /// For each triangle, the first one of its connected component; empty if there is only one component.
-    things: Arc<[u32]>,
+    component_firsts: Arc<[u32]>,
     /// Whether the mesh has an inside; its normals then point outwards, however the file winds its faces.
     is_solid: bool,
     /// Whether the file winds the faces inside out.
@@ -114,7 +114,7 @@ pub struct MeshInstance<R> {
     /// Index of its material.
     pub material: u32,
     /// Its index in the scene's list.
-    pub place: usize,
+    pub object_index: usize,
     /// The number of its first triangle, counted from that of the geometry's first primitive.
     pub first: usize,
 }
@@ -162,7 +162,7 @@ impl PackedMesh<f64> {
         triangles.extend(faces.iter().filter_map(packed));
         drop(points);
         measure(&mut triangles, &faces, &mut bvh, &borders);
-        let things = first_of_parts(&borders.connected).into();
+        let component_firsts = first_of_components(&borders.connected).into();
         let volume = if borders.is_closed {
             volume(&triangles)
         } else {
@@ -179,7 +179,7 @@ impl PackedMesh<f64> {
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             faces: faces.into(),
-            things,
+            component_firsts,
             bvh,
             is_solid: volume != 0.0,
             is_inside_out: volume < 0.0,
@@ -194,8 +194,8 @@ impl PackedMesh<f64> {
     /// Returns the mesh in another precision, or itself if it has that one: its properties stay, and its tree is
     /// shared.
     pub fn in_precision<R: Real>(this: &Arc<Self>) -> Arc<PackedMesh<R>> {
-        let own: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
-        own.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
+        let same: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
+        same.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
     }
 
     fn rounded<R: Real>(&self) -> PackedMesh<R> {
@@ -216,14 +216,14 @@ impl<R: Real> PackedMesh<R> {
         let turn = mesh.turn();
         let Points { points, middle } = Points::of(&self.source, turn);
         let faces = self.faces.par_iter().zip(&self.triangles);
-        let triangles = faces.map(|(face, own)| {
+        let triangles = faces.map(|(face, before)| {
             let corners = face.map(|point| points[point as usize]);
             let mut triangle = PackedTriangle::of_mesh(corners)?;
             if self.is_inside_out {
                 triangle.turn();
             }
-            triangle.thickness = own.thickness.to_f64();
-            triangle.tip = own.tip;
+            triangle.thickness = before.thickness.to_f64();
+            triangle.tip = before.tip;
             Some(triangle)
         });
         let triangles: Vec<PackedTriangle<f64>> = triangles.collect::<Option<_>>()?;
@@ -256,7 +256,7 @@ impl<R: Real> PackedMesh<R> {
             smooth,
             bvh,
             faces: Arc::clone(&self.faces),
-            things: Arc::clone(&self.things),
+            component_firsts: Arc::clone(&self.component_firsts),
             is_solid: self.is_solid,
             is_inside_out: self.is_inside_out,
             middle: self.middle,
@@ -267,13 +267,15 @@ impl<R: Real> PackedMesh<R> {
     }
 
     /// The first face of the connected component of `face`.
-    pub fn thing_of(&self, face: usize) -> usize {
-        self.things.get(face).map_or(0, |&first| first as usize)
+    pub fn component_of(&self, face: usize) -> usize {
+        self.component_firsts
+            .get(face)
+            .map_or(0, |&first| first as usize)
     }
 
     /// The position of a point of the source relative to the middle, with exactly the rounding of the triangles'
     /// corners.
-    pub fn place(&self, point: DVec3) -> Vec3<R> {
+    pub fn to_local(&self, point: DVec3) -> Vec3<R> {
         Vec3::from_dvec3(self.turn * point - self.middle)
     }
 

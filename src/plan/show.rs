@@ -28,7 +28,7 @@ pub enum Show<R> {
 }
 
 /// Depth range of a scene without bounded objects, in distances from the eye to the origin.
-const DEEP: f64 = 4.0;
+const DEFAULT_DEPTH: f64 = 4.0;
 
 impl<R: Real> Show<R> {
     /// Returns what the kernels write for an aspect of a scene.
@@ -36,7 +36,7 @@ impl<R: Real> Show<R> {
         match aspect {
             Aspect::Normals => Self::Normals,
             Aspect::Depth => {
-                let (nearest, farthest) = range(scene, projection);
+                let (nearest, farthest) = depth_range(scene, projection);
                 Self::Depth {
                     nearest: R::from_f64(nearest),
                     per_length: R::from_f64(1.0 / (farthest - nearest)),
@@ -61,10 +61,10 @@ impl<R: Real> Show<R> {
 }
 
 /// The least and greatest distance of the scene from the camera, by the ball around its bounded objects.
-fn range(scene: &Scene, projection: Projection) -> (f64, f64) {
+fn depth_range(scene: &Scene, projection: Projection) -> (f64, f64) {
     let Camera { position, .. } = scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {
-        return (0.0, (position.length() * DEEP).max(1.0));
+        return (0.0, (position.length() * DEFAULT_DEPTH).max(1.0));
     };
     let (middle, radius) = (low.midpoint(high), low.distance(high) / 2.0);
     let distance = match projection {

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::components::parts;
+use super::components::components_at_corners;
 use crate::mesh::are_closed;
 use crate::primitive::{Corner, PackedTriangle, corner};
 use crate::scene::{Scene, Shape};
@@ -94,10 +94,10 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
         .map(|corners| corners.map(&mut number))
         .collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for (index, part) in parts(&points).into_iter().enumerate() {
+    for (index, component) in components_at_corners(&points).into_iter().enumerate() {
         // Components are numbered in order of their first triangle.
-        found.resize_with(found.len().max(part as usize + 1), Vec::new);
-        found[part as usize].push(index);
+        found.resize_with(found.len().max(component as usize + 1), Vec::new);
+        found[component as usize].push(index);
     }
     found
 }

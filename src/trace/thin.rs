@@ -54,7 +54,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> L {
         let spread = self.plan.view.spread();
         let narrow = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
-        let widest = match (self.plan.things < CROWD, query.is_to_light) {
+        let widest = match (self.plan.visible_objects < CROWD, query.is_to_light) {
             (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
             (false, true) => narrow,
