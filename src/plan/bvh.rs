@@ -149,7 +149,7 @@ impl Node {
     /// The union of all boxes.
     fn around<R: Real>(&self) -> Member<R> {
         (0..self.count).fold(Member::nothing(), |around, index| {
-            around.and(&self.get(index))
+            around.union(&self.get(index))
         })
     }
 }
@@ -162,9 +162,9 @@ impl<R: Real> Member<R> {
         }
     }
 
-    fn and(&self, other: &Self) -> Self {
+    fn union(&self, other: &Self) -> Self {
         Self {
-            bounds: self.bounds.and(&other.bounds),
+            bounds: self.bounds.union(&other.bounds),
             thickness: self.thickness.min(other.thickness),
         }
     }
@@ -312,7 +312,7 @@ mod tests {
     }
 
     fn holds(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
-        outer.and(inner) == *outer
+        outer.union(inner) == *outer
     }
 
     #[test]

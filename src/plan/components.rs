@@ -175,13 +175,13 @@ mod tests {
         let (mut triangles, turned) = (ball(0.0, 0), ball(10.0, 0));
         let each = triangles.len();
         triangles.extend(turned);
-        triangles[each..].iter_mut().for_each(PackedTriangle::turn);
+        triangles[each..].iter_mut().for_each(PackedTriangle::flip);
         let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
         triangles.extend(PackedTriangle::of_mesh(sheet));
         // A tube without ends: the part of a ball near its equator.
         let mut tube = ball(20.0, 0);
         tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
-        tube.iter_mut().for_each(PackedTriangle::turn);
+        tube.iter_mut().for_each(PackedTriangle::flip);
         triangles.extend(tube);
         let components = components_at_corners(&number_corners(&triangles));
         let inside_out = inside_out(&triangles, &components);

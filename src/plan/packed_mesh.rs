@@ -169,7 +169,7 @@ impl PackedMesh<f64> {
             0.0
         };
         if volume < 0.0 {
-            triangles.iter_mut().for_each(PackedTriangle::turn);
+            triangles.iter_mut().for_each(PackedTriangle::flip);
         }
         let smooth = normals_of(mesh, &triangles);
         Self {
@@ -220,7 +220,7 @@ impl<R: Real> PackedMesh<R> {
             let corners = face.map(|point| points[point as usize]);
             let mut triangle = PackedTriangle::of_mesh(corners)?;
             if self.is_inside_out {
-                triangle.turn();
+                triangle.flip();
             }
             triangle.thickness = before.thickness.to_f64();
             triangle.tip = before.tip;

@@ -261,7 +261,7 @@ mod tests {
         assert!(farthest[0].min(farthest[1]) < 1e-9, "{farthest:?}");
         let turned = triangles.iter().map(|triangle| {
             let mut turned = *triangle;
-            turned.turn();
+            turned.flip();
             turned
         });
         let turned: Vec<_> = turned.collect();

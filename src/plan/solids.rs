@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::components::components_at_corners;
 use crate::mesh::are_closed;
-use crate::primitive::{Corner, PackedTriangle, corner};
+use crate::primitive::{Corner, PackedTriangle, corner_key};
 use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
@@ -71,7 +71,7 @@ pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
     });
     let Solids { triangles, solids } = Solids::made_of(triangles.collect());
     let faces = solids.into_iter().flatten();
-    faces.map(|face| triangles[face].map(corner)).collect()
+    faces.map(|face| triangles[face].map(corner_key)).collect()
 }
 
 /// The unit normal outwards, the distance from the origin along it, and the tolerance for points on the face.
@@ -87,7 +87,7 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
     let mut numbers = HashMap::new();
     let mut number = |point: DVec3| {
         let next = numbers.len() as u32;
-        *numbers.entry(corner(point)).or_insert(next)
+        *numbers.entry(corner_key(point)).or_insert(next)
     };
     let points: Vec<_> = triangles
         .iter()

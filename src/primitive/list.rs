@@ -88,11 +88,11 @@ macro_rules! kinds {
                     $(Shape::$kind(description) => {
                         let index = self.$list.len();
                         self.$list.push($packed::pack(description, material, packing)?);
-                        let place = |projector| $packed::<R>::rectangle(description, projector);
+                        let to_rectangle = |projector| $packed::<R>::rectangle(description, projector);
                         Some(Packed {
                             kind: Kind::$kind,
                             index,
-                            rectangle: packing.projector.and_then(place),
+                            rectangle: packing.projector.and_then(to_rectangle),
                         })
                     }),*
                     // A mesh is many primitives, which are stored elsewhere.

@@ -32,9 +32,10 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     /// have to be told apart, for ever less of a shadow.
     pub in_meshes: RayCone<L>,
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
-    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`MAX_SPREAD_INTO_MESHES`]
-    /// do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look for nothing. In crowded
-    /// scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and other rays above [`MAX_SPREAD_WHEN_CROWDED`].
+    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than
+    /// [`MAX_SPREAD_INTO_MESHES`] do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look
+    /// for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and other
+    /// rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
