@@ -12,7 +12,7 @@ use super::names::Names;
 use super::object::Object;
 use super::shape::{Mesh, Shape, Triangle};
 use super::whole::Scene;
-use crate::mesh::{Triangles, place_key};
+use crate::mesh::{Triangles, position_key};
 
 /// Largest number of faces of a mesh that can be separated: each becomes an object with a name.
 pub const MOST_SEPARATE: usize = 10_000;
@@ -29,7 +29,7 @@ impl Scene {
     /// empty if that object is not a triangle.
     pub fn connected_triangles(&self, index: usize) -> Vec<usize> {
         let corners = |object: &Object| match &object.shape {
-            Shape::Triangle(triangle) => Some(triangle.corners().map(place_key)),
+            Shape::Triangle(triangle) => Some(triangle.corners().map(position_key)),
             _ => None,
         };
         let mut users: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
@@ -66,7 +66,7 @@ impl Scene {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
         let mut number = |point: DVec3| {
-            *numbers.entry(place_key(point)).or_insert_with(|| {
+            *numbers.entry(position_key(point)).or_insert_with(|| {
                 points.push(point);
                 points.len() as u32 - 1
             })

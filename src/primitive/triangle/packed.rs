@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::mesh::place_key;
+use crate::mesh::position_key;
 use crate::primitive::kind::Corner;
 use crate::scene::{Scene, Shape, Triangle};
 use crate::simd::{Real, Vec3};
@@ -131,7 +131,7 @@ impl<R: Real> PackedTriangle<R> {
 
 /// Converts a corner to a key: two corners are the same if their coordinates are equal.
 pub fn corner_key(point: DVec3) -> Corner {
-    place_key(point)
+    position_key(point)
 }
 
 /// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not

@@ -11,7 +11,7 @@ use super::angles::{angles_of, orientation_of, turned_about};
 use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
-use crate::mesh::{FARTHEST, Triangles, icosphere};
+use crate::mesh::{MAX_ABS_COORDINATE, Triangles, icosphere};
 use crate::scene::notation;
 
 /// A triangle mesh, which is moved, turned and scaled as a whole.
@@ -282,7 +282,8 @@ impl Describe for Mesh {
     fn problem(&self) -> Option<String> {
         let (low, high) = self.bounds()?;
         let farthest = low.abs().max(high.abs()).max_element();
-        (farthest > FARTHEST).then(|| "the mesh must lie within 1e12 of the origin".to_owned())
+        (farthest > MAX_ABS_COORDINATE)
+            .then(|| "the mesh must lie within 1e12 of the origin".to_owned())
     }
 
     /// Returns the bounds of the transformed local bounding box, which may be larger than those of the triangles.
