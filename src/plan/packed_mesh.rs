@@ -49,7 +49,7 @@ pub struct PackedMesh<R> {
     is_inside_out: bool,
     /// The middle of the bounding box relative to the mesh's origin.
     middle: DVec3,
-    turn: DMat3,
+    linear: DMat3,
     /// What the mesh was packed from.
     pub key: MeshKey,
     /// Kept alive so that nothing else gets its address.
@@ -88,8 +88,12 @@ struct Points {
 }
 
 impl Points {
-    fn of(source: &Triangles, turn: DMat3) -> Self {
-        let mut points: Vec<DVec3> = source.points().iter().map(|&point| turn * point).collect();
+    fn of(source: &Triangles, linear: DMat3) -> Self {
+        let mut points: Vec<DVec3> = source
+            .points()
+            .iter()
+            .map(|&point| linear * point)
+            .collect();
         let named = source.faces().as_flattened().iter();
         let corners = named.map(|&corner| points[corner as usize]);
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -139,9 +143,9 @@ impl PackedMesh<f64> {
     }
 
     fn of(mesh: &Mesh) -> Self {
-        let turn = mesh.turn();
-        let Points { points, middle } = Points::of(mesh.source.triangles(), turn);
-        let is_mirrored = turn.determinant() < 0.0;
+        let linear = mesh.linear_transform();
+        let Points { points, middle } = Points::of(mesh.source.triangles(), linear);
+        let is_mirrored = linear.determinant() < 0.0;
         // Clockwise seen from outside, as in the source.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let corners = |face: [u32; 3]| face.map(|point| points[point as usize]);
@@ -185,7 +189,7 @@ impl PackedMesh<f64> {
             is_inside_out: volume < 0.0,
             triangles,
             middle,
-            turn,
+            linear,
             key: MeshKey::of(mesh),
             source: Arc::clone(mesh.source.triangles()),
         }
@@ -213,8 +217,8 @@ impl<R: Real> PackedMesh<R> {
     /// Returns `None` if the original order of its faces is not known, or if rounding leaves a face without an
     /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
-        let turn = mesh.turn();
-        let Points { points, middle } = Points::of(&self.source, turn);
+        let linear = mesh.linear_transform();
+        let Points { points, middle } = Points::of(&self.source, linear);
         let faces = self.faces.par_iter().zip(&self.triangles);
         let triangles = faces.map(|(face, before)| {
             let corners = face.map(|point| points[point as usize]);
@@ -235,7 +239,7 @@ impl<R: Real> PackedMesh<R> {
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
-            turn,
+            linear,
             key: MeshKey::of(mesh),
             ..self.with((triangles, smooth), bvh)
         })
@@ -260,7 +264,7 @@ impl<R: Real> PackedMesh<R> {
             is_solid: self.is_solid,
             is_inside_out: self.is_inside_out,
             middle: self.middle,
-            turn: self.turn,
+            linear: self.linear,
             key: self.key,
             source: Arc::clone(&self.source),
         }
@@ -276,7 +280,7 @@ impl<R: Real> PackedMesh<R> {
     /// The position of a point of the source relative to the middle, with exactly the rounding of the triangles'
     /// corners.
     pub fn to_local(&self, point: DVec3) -> Vec3<R> {
-        Vec3::from_dvec3(self.turn * point - self.middle)
+        Vec3::from_dvec3(self.linear * point - self.middle)
     }
 
     /// The position of the mesh's middle in the world, given the mesh that it was packed from.

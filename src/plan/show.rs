@@ -24,7 +24,7 @@ pub enum Show<R> {
     /// The number of rays per pixel, averaged over each tile.
     Cost,
     /// The picture darkened, with the samples that are traced again in white.
-    Again,
+    Retraced,
 }
 
 /// Depth range of a scene without bounded objects, in distances from the eye to the origin.
@@ -48,7 +48,7 @@ impl<R: Real> Show<R> {
             }
             Aspect::Mirrors => Self::Mirrors,
             Aspect::Cost => Self::Cost,
-            Aspect::Again => Self::Again,
+            Aspect::Retraced => Self::Retraced,
             Aspect::All
             | Aspect::Ambient
             | Aspect::Diffuse

@@ -34,11 +34,11 @@ pub enum Aspect {
     /// Number of rays per pixel, averaged over blocks of 8 × 8 pixels.
     Cost,
     /// Samples that are traced again in double precision.
-    Again,
+    Retraced,
 }
 
 /// Golden angle in turns: steps of this size give neighbouring objects the most distinct hues.
-const GOLDEN: f64 = 0.381_966_011_250_105;
+const GOLDEN_TURN: f64 = 0.381_966_011_250_105;
 /// Grey level of [`Aspect::Clay`], 0–255.
 const CLAY: f64 = 200.0;
 
@@ -98,7 +98,7 @@ impl Aspect {
             "What the picture costs, in squares of 8 pixels: black is 1 ray for each, white 1,000",
         ),
         (
-            Self::Again,
+            Self::Retraced,
             "Traced again",
             "Where rounding may decide what is seen, and double precision does: white, in a dark picture",
         ),
@@ -106,15 +106,15 @@ impl Aspect {
 
     /// The name in the user interface.
     pub fn name(self) -> &'static str {
-        self.words_of().0
+        self.name_and_meaning().0
     }
 
     /// A phrase that describes what is shown.
     pub fn meaning(self) -> &'static str {
-        self.words_of().1
+        self.name_and_meaning().1
     }
 
-    fn words_of(self) -> (&'static str, &'static str) {
+    fn name_and_meaning(self) -> (&'static str, &'static str) {
         let mut all = Self::EACH.iter();
         all.find(|(aspect, ..)| *aspect == self)
             .map_or(("", ""), |(_, name, meaning)| (name, meaning))
@@ -141,7 +141,7 @@ impl Aspect {
             shown.packs_mut().values_mut().for_each(change);
         };
         match self {
-            Self::All | Self::Mirrors | Self::Cost | Self::Again => {}
+            Self::All | Self::Mirrors | Self::Cost | Self::Retraced => {}
             Self::Normals | Self::Depth => unlit(&mut shown),
             Self::Shadows => {
                 clay(&mut shown);
@@ -153,7 +153,7 @@ impl Aspect {
                     light.intensity = 1.0;
                 }
             }
-            Self::Ambient => darken(&mut shown),
+            Self::Ambient => switch_off_lights(&mut shown),
             Self::Diffuse => {
                 shown.ambient_intensity = 0.0;
                 change(&mut shown, |pack| pack.specular = DVec3::ZERO);
@@ -167,7 +167,7 @@ impl Aspect {
             }
             Self::WithoutMirrors => change(&mut shown, |pack| pack.reflective = false),
             Self::Clay => clay(&mut shown),
-            Self::Objects => flat(&mut shown),
+            Self::Objects => color_by_object(&mut shown),
         }
         shown
     }
@@ -187,7 +187,7 @@ fn clay(shown: &mut Scene) {
 }
 
 /// Sets the intensity of all lights to zero.
-fn darken(shown: &mut Scene) {
+fn switch_off_lights(shown: &mut Scene) {
     for light in shown.lights.iter_mut() {
         light.intensity = 0.0;
     }
@@ -195,7 +195,7 @@ fn darken(shown: &mut Scene) {
 
 /// Removes all lights, the background and reflections.
 fn unlit(shown: &mut Scene) {
-    darken(shown);
+    switch_off_lights(shown);
     shown.background = DVec3::ZERO;
     for pack in shown.packs_mut().values_mut() {
         pack.reflective = false;
@@ -203,8 +203,8 @@ fn unlit(shown: &mut Scene) {
 }
 
 /// Gives each object its own colour, independent of lighting.
-fn flat(shown: &mut Scene) {
-    darken(shown);
+fn color_by_object(shown: &mut Scene) {
+    switch_off_lights(shown);
     shown.ambient_intensity = 1.0;
     let mut word = "object".to_owned();
     while shown.color_packs.keys().any(|name| name.starts_with(&word)) {
@@ -218,7 +218,7 @@ fn flat(shown: &mut Scene) {
     }
     for (index, name) in names.into_iter().enumerate() {
         let pack = ColorPack {
-            ambient: hue(index as f64 * GOLDEN),
+            ambient: hue(index as f64 * GOLDEN_TURN),
             ..ColorPack::default()
         };
         shown.packs_mut().insert(name, pack);
@@ -227,8 +227,8 @@ fn flat(shown: &mut Scene) {
 
 /// Returns a light colour with a hue given in turns.
 fn hue(turns: f64) -> DVec3 {
-    let channel = |off: f64| {
-        let wave = ((turns + off).fract() * 6.0 - 3.0).abs() - 1.0;
+    let channel = |phase: f64| {
+        let wave = ((turns + phase).fract() * 6.0 - 3.0).abs() - 1.0;
         70.0 + 180.0 * wave.clamp(0.0, 1.0)
     };
     DVec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
@@ -249,7 +249,7 @@ mod tests {
         for (aspect, name, _) in &Aspect::EACH[1..] {
             let shown = aspect.of(&demo);
             // These aspects are produced by the tracer, from an unchanged scene.
-            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Again);
+            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Retraced);
             assert_eq!(shown == demo, is_traced, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
         }

@@ -120,7 +120,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         if let Some(reference) = self.reference.filter(|_| is_anything_seen) {
             self.repeat(reference, samples, edges, traced);
         }
-        if self.kernel.plan.show == Show::Again {
+        if self.kernel.plan.show == Show::Retraced {
             let places = &self.work.again.places;
             traced.mark(if is_anything_seen { places } else { &[] });
         }

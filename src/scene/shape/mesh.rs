@@ -201,7 +201,7 @@ impl Mesh {
     }
 
     /// The linear part of [`Self::transform`]: scale, then rotation.
-    pub fn turn(&self) -> DMat3 {
+    pub fn linear_transform(&self) -> DMat3 {
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
         DMat3::from_rotation_z(z)
             * DMat3::from_rotation_y(y)
@@ -228,7 +228,7 @@ impl Mesh {
     /// The transform from local to world coordinates.
     pub fn transform(&self) -> DAffine3 {
         DAffine3 {
-            matrix3: self.turn(),
+            matrix3: self.linear_transform(),
             translation: self.position,
         }
     }
