@@ -10,7 +10,7 @@ use crate::simd::Vec3;
 
 /// Volume that an open sheet may enclose through rounding alone, relative to its area to the power of 1.5.
 const MAX_OPEN_VOLUME: f64 = 1e-6;
-/// Number of connected triangles from which they count as one thing; with fewer, the edges between them are visible
+/// Number of connected triangles from which they count as one component; with fewer, the edges between them are visible
 /// as such.
 const LARGE_COMPONENT: u32 = 64;
 
@@ -102,8 +102,8 @@ pub fn inside_out(triangles: &[PackedTriangle<f64>], components: &[u32]) -> Vec<
     components.iter().map(is_inside_out).collect()
 }
 
-/// Returns for each triangle the first triangle of the thing that it is part of, as the faces of a mesh are: of its
-/// component, if that has many triangles. Empty if there is no such component.
+/// Returns for each triangle the first triangle of its component, if that has many triangles, as meshes have. Empty if
+/// there is no such component.
 pub fn large_components(components: &[u32]) -> Vec<Option<u32>> {
     let found = component_firsts(components);
     if found.iter().all(|&(_, count)| count < LARGE_COMPONENT) {

@@ -394,7 +394,7 @@ pub fn belongs_in_tree(object: &Object) -> bool {
     object.visible && object.shape.bounds().is_some()
 }
 
-/// Measures the thickness of connected loose triangles, and finds groups of them that count as one thing.
+/// Measures the thickness of connected loose triangles, and finds large components of them.
 /// Primitives with numbers in `separate` are measured by themselves: with a tree, the others are in it.
 pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, separate: &BTreeSet<usize>) {
     let first = primitives.firsts()[Kind::Triangle as usize];

@@ -56,7 +56,7 @@ macro_rules! kinds {
         #[derive(Clone, Debug)]
         pub struct Primitives<R> {
             $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>,)*
-            /// For each triangle, the first triangle of the thing that it is part of, or `None` if it is one by
+            /// For each triangle, the first triangle of the component that it is part of, or `None` if it is one by
             /// itself; empty if all are.
             pub components: Vec<Option<u32>>,
         }
@@ -169,7 +169,7 @@ impl<R: Real> Primitives<R> {
         })
     }
 
-    /// The number of the first primitive of the thing that a primitive is part of: its own, if it is one by itself.
+    /// The number of the first primitive of the component that a primitive is part of: its own, if it is one by itself.
     #[inline(always)]
     pub fn component_of(&self, number: usize) -> usize {
         let first = self.firsts()[Kind::Triangle as usize];
