@@ -266,11 +266,11 @@ mod tests {
         assert_eq!(moved, [39, 40].map(Item::object));
         let moved = [39, 40].map(|index| scene.objects[index].name.clone());
         assert_eq!(moved, ["Ball 3", "Ball 7"]);
-        let all = scene.objects.bytes_apart(&List::new());
-        assert!(scene.objects.bytes_apart(&before) * 4 < all);
+        let all = scene.objects.unshared_bytes(&List::new());
+        assert!(scene.objects.unshared_bytes(&before) * 4 < all);
         group(&mut scene, &[9_000, 20], "g");
         assert_eq!(scene.objects[21].name, "Ball 9000");
-        assert!(scene.objects.bytes_apart(&before) * 4 < all);
+        assert!(scene.objects.unshared_bytes(&before) * 4 < all);
     }
 
     #[test]

@@ -284,7 +284,7 @@ impl Editor {
     /// The reason why it could not be written; the document then still counts as changed.
     pub fn save(&mut self, path: &Path) -> Result<(), SceneError> {
         let path = &absolute(path);
-        let document = self.document().at(path);
+        let document = self.document().for_path(path);
         let lost = self.lost_meshes(&document.scene);
         let (backup, stamp) = document.save_stamped(path)?;
         // Meshes that are stored in the scene file from now on no longer follow files of their own.
@@ -331,7 +331,7 @@ impl Editor {
     pub fn document_to_keep(&self) -> Document {
         let folder = self.path().and_then(Path::parent);
         let Document { header, scene } = self.document();
-        let scene = scene.taken_to(folder.unwrap_or(Path::new("")));
+        let scene = scene.inlined_for(folder.unwrap_or(Path::new("")));
         Document { header, scene }
     }
 

@@ -357,11 +357,11 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
     match item.kind {
         ItemKind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
-            scene.animation_mut().follow_name(Owner::Object(&from), to);
+            scene.animation_mut().rename_owner(Owner::Object(&from), to);
         }
         ItemKind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
-            scene.animation_mut().follow_name(Owner::Light(&from), to);
+            scene.animation_mut().rename_owner(Owner::Light(&from), to);
         }
         ItemKind::Pack if scene.color_packs.contains_key(to) => {
             return Err(EditError::PackNameTaken(to.to_owned()));

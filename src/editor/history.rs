@@ -60,7 +60,7 @@ impl History {
             return;
         }
         self.gesture = Some(label.clone());
-        let bytes = before.scene.bytes_apart(after);
+        let bytes = before.scene.unshared_bytes(after);
         self.done.push_back(Step {
             label,
             there: before,

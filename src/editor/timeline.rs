@@ -217,7 +217,7 @@ impl Timeline {
                 }
             }
             Repeat::Loop => {
-                let round = animation.seconds_of_round();
+                let round = animation.loop_duration();
                 let is_in = self.playhead < round;
                 let start = if is_in { self.playhead } else { 0.0 };
                 self.playhead = (start + step).rem_euclid(round);

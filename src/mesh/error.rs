@@ -87,13 +87,13 @@ impl Fault {
     }
 
     /// Adds the path of the file.
-    pub(super) fn of(self, path: &Path) -> MeshError {
+    pub(super) fn with_path(self, path: &Path) -> MeshError {
         let path = path.to_owned();
         match self {
             Self::TooMany { what, limit } => MeshError::TooMany { path, what, limit },
             Self::Refused { line, why } => {
                 // Names quoted from a file may be of any length and hold any character.
-                let why = excerpt(&why, LONGEST);
+                let why = excerpt(&why, MAX_MESSAGE_CHARS);
                 MeshError::Refused { path, line, why }
             }
         }
@@ -101,14 +101,14 @@ impl Fault {
 }
 
 /// Most characters of an error message.
-const LONGEST: usize = 240;
+const MAX_MESSAGE_CHARS: usize = 240;
 
-/// Returns at most `most` characters of a text, with control characters replaced by spaces; `…` marks a cut.
-pub(super) fn excerpt(text: &str, most: usize) -> String {
+/// Returns at most `max_chars` characters of a text, with control characters replaced by spaces; `…` marks a cut.
+pub(super) fn excerpt(text: &str, max_chars: usize) -> String {
     let mut characters = text.chars();
     let mut shown: String = characters
         .by_ref()
-        .take(most)
+        .take(max_chars)
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
     if characters.next().is_some() {

@@ -55,10 +55,10 @@ impl<'a> Buffers<'a> {
                 Source::Bin => None,
                 Source::Uri(uri) => Some(match known.entry(uri) {
                     Entry::Occupied(known) => Rc::clone(known.get()),
-                    Entry::Vacant(place) => {
+                    Entry::Vacant(vacant) => {
                         let bytes = Rc::new(read_uri(uri, folder)?);
                         total += bytes.len();
-                        Rc::clone(place.insert(bytes))
+                        Rc::clone(vacant.insert(bytes))
                     }
                 }),
             };
@@ -82,7 +82,7 @@ impl<'a> Buffers<'a> {
         let is_float = accessor.data_type() == DataType::F32;
         if accessor.dimensions() != Dimensions::Vec3 || !(is_float || self.is_quantized) {
             let why = "holds positions that are not three floats each";
-            return Err(refused(accessor, why));
+            return Err(accessor_fault(accessor, why));
         }
         let mut points = if accessor.view().is_some() {
             self.numbers(accessor)?
@@ -94,22 +94,22 @@ impl<'a> Buffers<'a> {
         let Some(sparse) = accessor.sparse() else {
             return Ok(points);
         };
-        let (places, values) = (sparse.indices(), sparse.values());
+        let (indices, values) = (sparse.indices(), sparse.values());
         if sparse.count() > points.len() {
-            let (count, there) = (sparse.count(), points.len());
-            let why = format!("replaces {count} points, but has only {there}");
-            return Err(refused(accessor, why));
+            let (count, available) = (sparse.count(), points.len());
+            let why = format!("replaces {count} points, but has only {available}");
+            return Err(accessor_fault(accessor, why));
         }
-        let size = places.index_type().size();
-        let slots = (places.offset(), size, sparse.count());
-        let places = self.slices(&places.view(), slots, accessor.index())?;
+        let size = indices.index_type().size();
+        let slots = (indices.offset(), size, sparse.count());
+        let indices = self.slices(&indices.view(), slots, accessor.index())?;
         let slots = (values.offset(), accessor.size(), sparse.count());
         let values = self.slices(&values.view(), slots, accessor.index())?;
-        for (place, value) in places.zip(values) {
-            let place = whole(place) as usize;
-            let Some(point) = points.get_mut(place) else {
-                let why = format!("replaces point {place}, which does not exist");
-                return Err(refused(accessor, why));
+        for (index, value) in indices.zip(values) {
+            let index = read_uint(index) as usize;
+            let Some(point) = points.get_mut(index) else {
+                let why = format!("replaces point {index}, which does not exist");
+                return Err(accessor_fault(accessor, why));
             };
             *point = components(value, accessor);
         }
@@ -134,13 +134,13 @@ impl<'a> Buffers<'a> {
         );
         if !is_index || accessor.dimensions() != Dimensions::Scalar {
             let why = "holds indices that are not whole numbers";
-            return Err(refused(accessor, why));
+            return Err(accessor_fault(accessor, why));
         }
         if accessor.sparse().is_some() {
             let why = "holds sparse indices, which are not supported";
-            return Err(refused(accessor, why));
+            return Err(accessor_fault(accessor, why));
         }
-        Ok(self.items(accessor)?.map(whole).collect())
+        Ok(self.items(accessor)?.map(read_uint).collect())
     }
 
     /// Returns the bytes of each item. The crate's own iterator panics on some of the files that are refused here.
@@ -196,21 +196,21 @@ impl<'a> Buffers<'a> {
 }
 
 /// Reads a little-endian unsigned integer of up to four bytes.
-fn whole(item: &[u8]) -> u32 {
+fn read_uint(item: &[u8]) -> u32 {
     let mut bytes = [0; 4];
-    for (byte, &from) in bytes.iter_mut().zip(item) {
-        *byte = from;
+    for (byte, &source) in bytes.iter_mut().zip(item) {
+        *byte = source;
     }
     u32::from_le_bytes(bytes)
 }
 
 /// Decodes the components of an item; missing ones are NaN. Normalized integers are scaled to −1 to 1.
 fn components<const N: usize>(item: &[u8], accessor: &Accessor) -> [f32; N] {
-    let (kind, is_share) = (accessor.data_type(), accessor.normalized());
+    let (kind, is_normalized) = (accessor.data_type(), accessor.normalized());
     let size = kind.size();
-    let share = |number: f32, most: f32| {
-        if is_share {
-            (number / most).max(-1.0)
+    let normalize = |number: f32, max: f32| {
+        if is_normalized {
+            (number / max).max(-1.0)
         } else {
             number
         }
@@ -220,14 +220,14 @@ fn components<const N: usize>(item: &[u8], accessor: &Accessor) -> [f32; N] {
         let Some(bytes) = bytes.get(..size) else {
             return f32::NAN;
         };
-        let number = whole(bytes);
+        let number = read_uint(bytes);
         let [low, high, ..] = number.to_le_bytes();
         let pair = [low, high];
         match kind {
-            DataType::I8 => share(f32::from(i8::from_le_bytes([low])), 127.0),
-            DataType::U8 => share(f32::from(low), 255.0),
-            DataType::I16 => share(f32::from(i16::from_le_bytes(pair)), 32767.0),
-            DataType::U16 => share(f32::from(u16::from_le_bytes(pair)), 65535.0),
+            DataType::I8 => normalize(f32::from(i8::from_le_bytes([low])), 127.0),
+            DataType::U8 => normalize(f32::from(low), 255.0),
+            DataType::I16 => normalize(f32::from(i16::from_le_bytes(pair)), 32767.0),
+            DataType::U16 => normalize(f32::from(u16::from_le_bytes(pair)), 65535.0),
             DataType::U32 => number as f32,
             DataType::F32 => f32::from_bits(number),
         }
@@ -269,6 +269,6 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
 }
 
 /// The fault of an accessor that is not read.
-pub(super) fn refused(accessor: &Accessor, why: impl std::fmt::Display) -> Fault {
+pub(super) fn accessor_fault(accessor: &Accessor, why: impl std::fmt::Display) -> Fault {
     Fault::new(format!("accessor {} {why}", accessor.index()))
 }

@@ -13,9 +13,9 @@ use gltf::{Document, Glb, Material, Node, Semantic};
 
 use super::error::Fault;
 use super::gltf_buffers::Buffers;
-use super::gltf_skin::Placing;
+use super::gltf_skin::Placement;
 use super::limits::{check_faces, check_groups, check_points};
-use super::part::{CLEAR, COLORS_OF_POINTS, GLOWING, MeshFile, Part, PartColors};
+use super::part::{MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TRANSPARENT, Part, PartColors};
 use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes of memory.
@@ -35,7 +35,7 @@ const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 /// Reads the primitives of the default scene; without one, of the first scene; without any, of all nodes.
 pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, Fault> {
     let (json, chunk) = split(bytes)?;
-    let (document, animates) = document_of(&json)?;
+    let (document, has_animations) = document_of(&json)?;
     let buffers = Buffers::load(&document, chunk.as_deref(), folder)?;
     let mut walk = Walk {
         buffers,
@@ -46,8 +46,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         faces: 0,
     };
     let mut visited = vec![false; document.nodes().len()];
-    let mut places = vec![DMat4::IDENTITY; document.nodes().len()];
-    let mut shown = Vec::new();
+    let mut transforms = vec![DMat4::IDENTITY; document.nodes().len()];
+    let mut visited_nodes = Vec::new();
     let roots = roots(&document).into_iter();
     let mut stack: Vec<_> = roots.map(|node| (node, DMat4::IDENTITY)).collect();
     // The first node goes on top of the stack.
@@ -61,18 +61,18 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
             )));
         }
         let transform = outer * matrix_of(&node);
-        places[index] = transform;
+        transforms[index] = transform;
         let start = stack.len();
         stack.extend(node.children().map(|child| (child, transform)));
         stack[start..].reverse();
-        shown.push(node);
+        visited_nodes.push(node);
     }
-    for node in &shown {
-        walk.add(node, &places)?;
+    for node in &visited_nodes {
+        walk.add(node, &transforms)?;
     }
     Ok(MeshFile {
         parts: walk.parts,
-        notes: notes(&document, animates),
+        notes: notes(&document, has_animations),
     })
 }
 
@@ -91,19 +91,19 @@ fn roots(document: &Document) -> Vec<Node<'_>> {
 }
 
 /// Notes on what is in a file but is not read.
-fn notes(document: &Document, animates: bool) -> Vec<String> {
+fn notes(document: &Document, has_animations: bool) -> Vec<String> {
     let primitives = || document.meshes().flat_map(|mesh| mesh.primitives());
     let has_colors = |one: Primitive| one.get(&Semantic::Colors(0)).is_some();
     let uses = |extension| document.extensions_used().any(|name| name == extension);
-    let is_clear = |material: &Material| {
+    let is_transparent = |material: &Material| {
         let [.., alpha] = material.pbr_metallic_roughness().base_color_factor();
         material.alpha_mode() != AlphaMode::Opaque && alpha < 1.0
     };
-    let glows = |material: &Material| material.emissive_factor() != [0.0; 3];
+    let is_emissive = |material: &Material| material.emissive_factor() != [0.0; 3];
     [
-        (document.materials().any(|material| is_clear(&material)), CLEAR),
-        (document.materials().any(|material| glows(&material)), GLOWING),
-        (primitives().any(has_colors), COLORS_OF_POINTS),
+        (document.materials().any(|material| is_transparent(&material)), NOTE_TRANSPARENT),
+        (document.materials().any(|material| is_emissive(&material)), NOTE_EMISSIVE),
+        (primitives().any(has_colors), NOTE_POINT_COLORS),
         (
             primitives().any(|one| one.morph_targets().len() > 0),
             "its morph targets are left out",
@@ -111,7 +111,7 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
         (document.textures().len() > 0, "its textures are left out"),
         (document.cameras().len() > 0, "its cameras are left out"),
         (uses("KHR_lights_punctual"), "its lights are left out"),
-        (animates, "its animations are left out"),
+        (has_animations, "its animations are left out"),
         (
             uses("KHR_materials_pbrSpecularGlossiness"),
             "some of its colours are left out: KHR_materials_pbrSpecularGlossiness is not supported",
@@ -126,7 +126,7 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
         ),
     ]
     .into_iter()
-    .filter(|(is_there, _)| *is_there)
+    .filter(|(applies, _)| *applies)
     .map(|(_, note)| note.to_owned())
     .collect()
 }
@@ -159,7 +159,7 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
         let (what, limit) = ("objects and lists", MAX_OBJECTS);
         return Err(Fault::TooMany { what, limit });
     }
-    let (mut root, animates) = root_of(json)?;
+    let (mut root, has_animations) = root_of(json)?;
     root.animations.clear();
     // Required extensions for materials, lights or images do not prevent reading the triangles.
     let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
@@ -175,13 +175,13 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
             return Fault::new(format!("not a valid glTF file: {error}"));
         };
         let first = errors.first();
-        let said = first.map(|(path, error)| format!("{path}: {error}"));
+        let message = first.map(|(path, error)| format!("{path}: {error}"));
         Fault::new(format!(
             "not a valid glTF file: {}",
-            said.unwrap_or_default()
+            message.unwrap_or_default()
         ))
     })?;
-    Ok((document, animates))
+    Ok((document, has_animations))
 }
 
 /// Parses the JSON without validating it; also returns whether the file has animations. Animations may use features
@@ -189,8 +189,8 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
 fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
     let error = match Root::from_slice(json) {
         Ok(root) => {
-            let animates = !root.animations.is_empty();
-            return Ok((root, animates));
+            let has_animations = !root.animations.is_empty();
+            return Ok((root, has_animations));
         }
         Err(error) => error,
     };
@@ -208,8 +208,10 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
     {
         return Ok((root, true));
     }
-    let said = error.to_string();
-    let why = said.rsplit_once(" at line ").map_or(&*said, |(why, _)| why);
+    let message = error.to_string();
+    let why = message
+        .rsplit_once(" at line ")
+        .map_or(&*message, |(why, _)| why);
     let sentence = format!("not a valid glTF file: {why}");
     Err(Fault::in_line(error.line(), sentence))
 }
@@ -285,20 +287,20 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn add(&mut self, node: &Node, places: &[DMat4]) -> Result<(), Fault> {
+    fn add(&mut self, node: &Node, transforms: &[DMat4]) -> Result<(), Fault> {
         let Some(mesh) = node.mesh() else {
             return Ok(());
         };
-        let placing = match node.skin() {
+        let placement = match node.skin() {
             Some(skin) => {
                 // Many nodes may share a skin.
                 let matrices = skin.inverse_bind_matrices().map_or(0, |all| all.count());
                 let joints = skin.joints().count();
                 self.scanned = self.scanned.saturating_add(joints.max(matrices));
                 check_points(self.scanned / MOST_SCANS)?;
-                Placing::of_skin(&skin, places, &self.buffers)?
+                Placement::of_skin(&skin, transforms, &self.buffers)?
             }
-            None => Placing::Whole(places[node.index()]),
+            None => Placement::Whole(transforms[node.index()]),
         };
         let name = node.name().or(mesh.name()).unwrap_or(self.stem);
         for primitive in mesh.primitives() {
@@ -309,7 +311,7 @@ impl Walk<'_> {
             ) {
                 continue;
             }
-            let triangles = self.triangles(&primitive, mode, &placing)?;
+            let triangles = self.triangles(&primitive, mode, &placement)?;
             check_groups(self.parts.len() + 1)?;
             self.parts.push(Part {
                 name: name.to_owned(),
@@ -324,7 +326,7 @@ impl Walk<'_> {
         &mut self,
         primitive: &Primitive,
         mode: Mode,
-        placing: &Placing,
+        placement: &Placement,
     ) -> Result<Triangles, Fault> {
         let Some(accessor) = primitive.get(&Semantic::Positions) else {
             return Ok(Triangles::default());
@@ -350,17 +352,17 @@ impl Walk<'_> {
         };
         let mut faces = triangles_of(&corners, mode);
         // A reflection turns faces inside out; two reflections cancel out.
-        if placing.is_mirror() {
+        if placement.is_mirror() {
             for [_, b, c] in &mut faces {
                 std::mem::swap(b, c);
             }
         }
-        let hung = placing.hung(primitive, points.len(), &self.buffers)?;
-        let place = |index: usize| {
+        let skin_weights = placement.read_weights(primitive, points.len(), &self.buffers)?;
+        let position = |index: usize| {
             let point = Vec3::from(points[index]).as_dvec3();
-            placing.place(point, index, hung.as_ref())
+            placement.position(point, index, skin_weights.as_ref())
         };
-        Triangles::weld(points.len(), place, faces.into_iter())
+        Triangles::weld(points.len(), position, faces.into_iter())
     }
 }
 
@@ -368,11 +370,11 @@ fn triangles_of(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => {
             let strip = corners.array_windows().enumerate();
-            let turned = |(number, &[a, b, c]): (usize, &[u32; 3])| match number % 2 {
+            let wound = |(number, &[a, b, c]): (usize, &[u32; 3])| match number % 2 {
                 0 => [a, b, c],
                 _ => [b, a, c],
             };
-            strip.map(turned).collect()
+            strip.map(wound).collect()
         }
         Mode::TriangleFan => match corners {
             [first, rest @ ..] => rest

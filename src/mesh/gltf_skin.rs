@@ -6,10 +6,10 @@ use gltf::mesh::Primitive;
 use gltf::{Semantic, Skin};
 
 use super::error::Fault;
-use super::gltf_buffers::{Buffers, refused};
+use super::gltf_buffers::{Buffers, accessor_fault};
 
 /// How the points of a node's mesh are placed in the scene.
-pub(super) enum Placing {
+pub(super) enum Placement {
     /// By the node's own transform.
     Whole(DMat4),
     /// By the joints of a skin, regardless of the node's own transform.
@@ -17,33 +17,37 @@ pub(super) enum Placing {
 }
 
 /// Joint indices and weights of each point of a primitive.
-pub(super) struct Hung {
+pub(super) struct SkinWeights {
     joints: Vec<[f32; 4]>,
     weights: Vec<[f32; 4]>,
 }
 
-impl Placing {
-    /// The placing by a skin; `places` holds the global transform of each node.
-    pub(super) fn of_skin(skin: &Skin, places: &[DMat4], buffers: &Buffers) -> Result<Self, Fault> {
-        let unbound = match skin.inverse_bind_matrices() {
+impl Placement {
+    /// The placement by a skin; `transforms` holds the global transform of each node.
+    pub(super) fn of_skin(
+        skin: &Skin,
+        transforms: &[DMat4],
+        buffers: &Buffers,
+    ) -> Result<Self, Fault> {
+        let inverse_binds = match skin.inverse_bind_matrices() {
             None => Vec::new(),
             Some(accessor) => {
-                let kind = (DataType::F32, Dimensions::Mat4);
-                if (accessor.data_type(), accessor.dimensions()) != kind {
+                let expected = (DataType::F32, Dimensions::Mat4);
+                if (accessor.data_type(), accessor.dimensions()) != expected {
                     let why = "holds skin matrices that are not sixteen floats each";
-                    return Err(refused(&accessor, why));
+                    return Err(accessor_fault(&accessor, why));
                 }
                 buffers.numbers::<16>(&accessor)?
             }
         };
         let joints = skin.joints().enumerate().map(|(number, joint)| {
-            let place = places
+            let transform = transforms
                 .get(joint.index())
                 .copied()
                 .unwrap_or(DMat4::IDENTITY);
-            match unbound.get(number) {
-                Some(matrix) => place * DMat4::from_cols_array(&matrix.map(f64::from)),
-                None => place,
+            match inverse_binds.get(number) {
+                Some(matrix) => transform * DMat4::from_cols_array(&matrix.map(f64::from)),
+                None => transform,
             }
         });
         Ok(Self::Joints(joints.collect()))
@@ -59,12 +63,12 @@ impl Placing {
     }
 
     /// Reads the joints and weights of a primitive with this number of points; `None` if it is not skinned.
-    pub(super) fn hung(
+    pub(super) fn read_weights(
         &self,
         primitive: &Primitive,
         points: usize,
         buffers: &Buffers,
-    ) -> Result<Option<Hung>, Fault> {
+    ) -> Result<Option<SkinWeights>, Fault> {
         let joints = primitive.get(&Semantic::Joints(0));
         let weights = primitive.get(&Semantic::Weights(0));
         let (Self::Joints(_), Some(joints), Some(weights)) = (self, joints, weights) else {
@@ -73,28 +77,37 @@ impl Placing {
         for accessor in [&joints, &weights] {
             if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
                 let why = "does not hold four joints or weights for each point";
-                return Err(refused(accessor, why));
+                return Err(accessor_fault(accessor, why));
             }
         }
-        Ok(Some(Hung {
+        Ok(Some(SkinWeights {
             joints: buffers.numbers(&joints)?,
             weights: buffers.numbers(&weights)?,
         }))
     }
 
     /// Returns the position of a point in the scene. The matrices are affine: their last row is 0 0 0 1.
-    pub(super) fn place(&self, point: DVec3, index: usize, hung: Option<&Hung>) -> DVec3 {
+    pub(super) fn position(
+        &self,
+        point: DVec3,
+        index: usize,
+        skin_weights: Option<&SkinWeights>,
+    ) -> DVec3 {
         let joints = match self {
             Self::Whole(matrix) => return matrix.transform_point3(point),
             Self::Joints(joints) => joints,
         };
-        let shares =
-            hung.and_then(|hung| Some((hung.joints.get(index)?, hung.weights.get(index)?)));
+        let influences = skin_weights.and_then(|skin_weights| {
+            Some((
+                skin_weights.joints.get(index)?,
+                skin_weights.weights.get(index)?,
+            ))
+        });
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-        if let Some((numbers, weights)) = shares {
-            for (&number, &weight) in numbers.iter().zip(weights) {
+        if let Some((joint_indices, weights)) = influences {
+            for (&joint_index, &weight) in joint_indices.iter().zip(weights) {
                 // Joint indices have at most two bytes, so they are exact in single precision.
-                if let Some(joint) = joints.get(number as usize) {
+                if let Some(joint) = joints.get(joint_index as usize) {
                     sum += joint.transform_point3(point) * f64::from(weight);
                     total += f64::from(weight);
                 }

@@ -45,7 +45,7 @@ use crate::files::{Marks, has_ending, marks_of};
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
 pub use solids::{SOLIDS, Solid, icosphere};
-pub use triangles::{FARTHEST, Triangles, are_closed, place_key};
+pub use triangles::{MAX_ABS_COORDINATE, Triangles, are_closed, position_key};
 
 /// File format of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,9 +79,9 @@ pub fn is_mesh_file(path: &Path) -> bool {
 pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
     let (time, length) = marks_of(path)?;
     let is_gltf = has_ending(path, "gltf");
-    let numbers = is_gltf.then(|| marks_of(&path.with_extension("bin")));
-    let (later, more) = numbers.flatten().unwrap_or((time, 0));
-    Some((time.max(later), length.saturating_add(more)))
+    let bin_marks = is_gltf.then(|| marks_of(&path.with_extension("bin")));
+    let (bin_time, bin_length) = bin_marks.flatten().unwrap_or((time, 0));
+    Some((time.max(bin_time), length.saturating_add(bin_length)))
 }
 
 /// Reads the parts of a mesh file that have triangles.
@@ -95,10 +95,10 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
         });
     };
     let mut bytes = limits::read_mesh_bytes(path)?;
-    let marked = bytes.len() - text::without_mark(&bytes).len();
+    let mark_length = bytes.len() - text::without_mark(&bytes).len();
     // Only text: the header of a binary STL file may hold any bytes, also those of a byte order mark.
-    if format != MeshFormat::Stl || stl::is_text(&bytes[marked..]) {
-        bytes.drain(..marked);
+    if format != MeshFormat::Stl || stl::is_text(&bytes[mark_length..]) {
+        bytes.drain(..mark_length);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -108,7 +108,7 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
         MeshFormat::Ply => ply::read(&bytes, &stem),
         MeshFormat::Gltf => gltf_scene::read(&bytes, folder, &stem),
     };
-    let mut file = read.map_err(|fault| fault.of(path))?;
+    let mut file = read.map_err(|fault| fault.with_path(path))?;
     file.parts.retain(|part| !part.triangles.faces().is_empty());
     if file.parts.is_empty() {
         return Err(MeshError::Empty {
@@ -124,7 +124,7 @@ pub fn read_mesh_file(path: &Path) -> Result<MeshFile, MeshError> {
 /// [`MeshError`] with the place in the file and what is wrong.
 pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
     let path = Path::new("the program's own mesh");
-    let file = ply::read(bytes, "").map_err(|fault| fault.of(path))?;
+    let file = ply::read(bytes, "").map_err(|fault| fault.with_path(path))?;
     let triangles = file.parts.into_iter().next().map(|part| part.triangles);
     Ok(triangles.unwrap_or_default())
 }
@@ -138,7 +138,7 @@ pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
     match file.parts.as_mut_slice() {
         [only] => Ok(std::mem::take(&mut only.triangles)),
         several => Triangles::join(several.iter().map(|part| &part.triangles))
-            .map_err(|fault| fault.of(path)),
+            .map_err(|fault| fault.with_path(path)),
     }
 }
 

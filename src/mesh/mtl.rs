@@ -11,7 +11,7 @@ use tobj::{LoadError, MTLLoadResult, Material};
 
 use super::error::excerpt;
 use super::limits::read_bounded;
-use super::part::{CLEAR, GLOWING, PartColors};
+use super::part::{NOTE_EMISSIVE, NOTE_TRANSPARENT, PartColors};
 use super::text::text_of;
 use crate::files::stays_inside;
 
@@ -41,7 +41,7 @@ pub(super) struct Libraries<'a> {
     /// The first material that was used and is in no file.
     unknown: RefCell<Option<String>>,
     /// The first material that was used before any file was read.
-    early: RefCell<Option<String>>,
+    used_early: RefCell<Option<String>>,
     /// Whether a material has a texture.
     has_textures: Cell<bool>,
     /// Whether a material is transparent.
@@ -60,7 +60,7 @@ impl<'a> Libraries<'a> {
             names: RefCell::default(),
             missing: RefCell::default(),
             unknown: RefCell::default(),
-            early: RefCell::default(),
+            used_early: RefCell::default(),
             has_textures: Cell::default(),
             is_clear: Cell::default(),
             glows: Cell::default(),
@@ -68,11 +68,11 @@ impl<'a> Libraries<'a> {
     }
 
     /// The notes on properties of materials that are left out.
-    pub(super) fn left_out(&self) -> impl Iterator<Item = String> {
+    pub(super) fn omission_notes(&self) -> impl Iterator<Item = String> {
         let notes = [
             (&self.has_textures, "its textures are left out"),
-            (&self.is_clear, CLEAR),
-            (&self.glows, GLOWING),
+            (&self.is_clear, NOTE_TRANSPARENT),
+            (&self.glows, NOTE_EMISSIVE),
         ];
         let notes = notes.into_iter().filter(|(is_there, _)| is_there.get());
         notes.map(|(_, note)| note.to_owned())
@@ -93,41 +93,41 @@ impl<'a> Libraries<'a> {
             ));
         }
         let has_any = !self.names.borrow().is_empty();
-        let early = self.early.take().filter(|_| has_any)?;
-        let name = excerpt(&early, LONGEST_NAME);
+        let used_early = self.used_early.take().filter(|_| has_any)?;
+        let name = excerpt(&used_early, LONGEST_NAME);
         Some(format!(
             "some colours are missing: it uses {name} before naming its material file"
         ))
     }
 
     /// Returns a `usemtl` line without a comment after the name. The name itself may contain a `#`.
-    pub(super) fn known_name<'t>(&self, line: &'t str) -> &'t str {
+    pub(super) fn without_comment<'t>(&self, line: &'t str) -> &'t str {
         let name = |line: &'t str| Some(line.split_once([' ', '\t'])?.1.trim());
         let names = self.names.borrow();
         let is_known = |line: &'t str| name(line).is_some_and(|name| names.contains(name));
-        let without = line.split_once('#').map(|(before, _)| before.trim_end());
+        let stripped = line.split_once('#').map(|(before, _)| before.trim_end());
         if is_known(line) {
             return line;
         }
-        if let Some(without) = without.filter(|without| is_known(without)) {
-            return without;
+        if let Some(stripped) = stripped.filter(|stripped| is_known(stripped)) {
+            return stripped;
         }
         // Some names stand for no material. If no file is read at all, no colours are expected, or the missing file
         // is noted already.
         if let Some(name) = name(line).filter(|name| !NO_MATERIAL.contains(name)) {
-            let place = if names.is_empty() {
-                &self.early
+            let slot = if names.is_empty() {
+                &self.used_early
             } else {
                 &self.unknown
             };
-            place.borrow_mut().get_or_insert_with(|| name.to_owned());
+            slot.borrow_mut().get_or_insert_with(|| name.to_owned());
         }
         line
     }
 
     /// Loads a material file. If it is missing, outside the folder or unreadable, the mesh merely has no colours.
     pub(super) fn load(&self, name: &Path) -> MTLLoadResult {
-        let loaded = self.load_known(name);
+        let loaded = self.load_file(name);
         if let Ok((_, numbers)) = &loaded {
             self.names.borrow_mut().extend(numbers.keys().cloned());
         } else {
@@ -137,7 +137,7 @@ impl<'a> Libraries<'a> {
         loaded
     }
 
-    fn load_known(&self, name: &Path) -> MTLLoadResult {
+    fn load_file(&self, name: &Path) -> MTLLoadResult {
         // Exporters on Windows write backslashes.
         let name = name.to_string_lossy().replace('\\', "/");
         let name = name.trim_matches('"');

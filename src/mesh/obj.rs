@@ -10,7 +10,7 @@ use super::error::Fault;
 use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
-use super::part::{COLORS_OF_POINTS, MeshFile, Part};
+use super::part::{MeshFile, NOTE_POINT_COLORS, Part};
 use super::polygon::{mend_fan, note_of_uncut};
 use super::text::text_of;
 use super::triangles::Triangles;
@@ -43,10 +43,12 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     let mut pieces: IndexMap<_, Vec<Model>> = IndexMap::new();
     let mut polygons = 0;
     for model in models {
-        let group = lines.starts.partition_point(|&start| start <= polygons);
+        let group = lines
+            .group_starts
+            .partition_point(|&start| start <= polygons);
         polygons += polygons_of(&model);
-        let own = pieces.entry((group, model.mesh.material_id)).or_default();
-        own.push(model);
+        let same_part = pieces.entry((group, model.mesh.material_id)).or_default();
+        same_part.push(model);
     }
     let mut uncut = 0;
     let parts = pieces.into_iter().map(|((_, material), models)| {
@@ -70,10 +72,14 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         })
     });
     let parts = parts.collect::<Result<Vec<_>, Fault>>()?;
-    let has_lost = lines.has_colors && parts.iter().any(|part| part.colors.is_none());
-    let colors = has_lost.then(|| COLORS_OF_POINTS.to_owned());
-    let left_out = libraries.left_out();
-    let notes = libraries.note().into_iter().chain(left_out).chain(colors);
+    let has_lost_colors = lines.has_colors && parts.iter().any(|part| part.colors.is_none());
+    let colors = has_lost_colors.then(|| NOTE_POINT_COLORS.to_owned());
+    let omission_notes = libraries.omission_notes();
+    let notes = libraries
+        .note()
+        .into_iter()
+        .chain(omission_notes)
+        .chain(colors);
     let notes = notes.chain(note_of_uncut(uncut)).collect();
     Ok(MeshFile { parts, notes })
 }

@@ -1,49 +1,49 @@
 //! Locates the error in an OBJ file that `tobj` has refused: `tobj` says what is wrong, but not where.
 
 use super::error::{Fault, excerpt};
-use super::obj_lines::Kind;
-use super::triangles::FARTHEST;
+use super::obj_lines::LineKind;
+use super::triangles::MAX_ABS_COORDINATE;
 
 /// Most characters of a word that an error message quotes.
 const EXCERPT: usize = 24;
 
-/// Finds the first faulty line. If there is none, the fault repeats `said`, the message of `tobj`.
-pub(super) fn find_fault(text: &str, said: &str) -> Fault {
+/// Finds the first faulty line. If there is none, the fault repeats `message`, that of `tobj`.
+pub(super) fn find_fault(text: &str, message: &str) -> Fault {
     let is_point = |line: &&str| line.split_ascii_whitespace().next() == Some("v");
     let total = text.lines().filter(is_point).count();
-    let mut before = 0;
-    let mut going_on = None;
+    let mut points_before = 0;
+    let mut continued_kind = None;
     for (index, line) in text.lines().enumerate() {
         let mut words = line.split_ascii_whitespace();
-        let begun = going_on.take();
-        let keyword = if begun.is_some() {
+        let begun_kind = continued_kind.take();
+        let keyword = if begun_kind.is_some() {
             Some("")
         } else {
             words.next()
         };
-        let kind = begun.unwrap_or_else(|| Kind::of(line));
-        let goes_on = kind.can_go_on() && line.trim_ascii_end().ends_with('\\');
-        going_on = goes_on.then_some(kind);
+        let kind = begun_kind.unwrap_or_else(|| LineKind::of(line));
+        let continues = kind.can_continue() && line.trim_ascii_end().ends_with('\\');
+        continued_kind = continues.then_some(kind);
         let why = match keyword {
             Some("v") => {
-                before += 1;
+                points_before += 1;
                 // Coordinates on a continuation line are not checked.
-                if goes_on { None } else { wrong_point(words) }
+                if continues { None } else { point_error(words) }
             }
             Some("f") => words
                 .take_while(|word| !word.starts_with('#'))
                 .filter(|&word| word != "\\")
-                .find_map(|word| wrong_corner(word, before, total)),
+                .find_map(|word| corner_error(word, points_before, total)),
             _ => None,
         };
         if let Some(why) = why {
             return Fault::in_line(index + 1, why);
         }
     }
-    Fault::new(format!("not a valid OBJ file: {said}"))
+    Fault::new(format!("not a valid OBJ file: {message}"))
 }
 
-fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
+fn point_error<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
     for _ in 0..3 {
         let Some(word) = words.next() else {
             return Some("a point needs three coordinates".to_owned());
@@ -55,14 +55,16 @@ fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
                 excerpt(word, EXCERPT)
             ));
         };
-        if number.abs() > FARTHEST {
-            return Some(format!("the coordinate {number:e} is beyond {FARTHEST:e}"));
+        if number.abs() > MAX_ABS_COORDINATE {
+            return Some(format!(
+                "the coordinate {number:e} is beyond {MAX_ABS_COORDINATE:e}"
+            ));
         }
     }
     None
 }
 
-fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
+fn corner_error(word: &str, before: usize, total: usize) -> Option<String> {
     let is_number = |text: &str| text.is_empty() || text.parse::<isize>().is_ok();
     let mut numbers = word.split('/');
     let Some(point) = numbers.next().and_then(|text| text.parse::<isize>().ok()) else {
@@ -78,12 +80,11 @@ fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
         ));
     }
     // A negative number counts backwards from the last point before the face.
-    let (is_there, count) = match point {
+    let (exists, count) = match point {
         ..0 => (point.unsigned_abs() <= before, before),
         0 => return Some("this face names point 0; points are counted from 1".to_owned()),
         1.. => (point.unsigned_abs() <= total, total),
     };
     let before = if point < 0 { " before it" } else { "" };
-    (!is_there)
-        .then(|| format!("this face names point {point}, but there are only {count}{before}"))
+    (!exists).then(|| format!("this face names point {point}, but there are only {count}{before}"))
 }

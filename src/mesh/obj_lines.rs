@@ -13,7 +13,7 @@ use super::mtl::Libraries;
 
 /// Kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum LineKind {
     Point,
     Face,
     Group,
@@ -23,7 +23,7 @@ pub(super) enum Kind {
     Other,
 }
 
-impl Kind {
+impl LineKind {
     pub(super) fn of(line: &str) -> Self {
         match line.split_ascii_whitespace().next() {
             Some("v") => Self::Point,
@@ -39,7 +39,7 @@ impl Kind {
 
     /// Returns whether a trailing backslash continues a line of this kind: names of files and groups may end with
     /// one, and so may comments.
-    pub(super) fn can_go_on(self) -> bool {
+    pub(super) fn can_continue(self) -> bool {
         matches!(self, Self::Point | Self::Face | Self::Other)
     }
 }
@@ -50,11 +50,11 @@ pub(super) struct ObjLines<'a> {
     /// The piece that is read next.
     piece: &'a [u8],
     /// The separator after the piece: a line break, or a space before a continuation line.
-    behind: &'static [u8],
+    separator: &'static [u8],
     /// What follows the separator, up to the end of the line.
     rest_of_line: &'a str,
     /// The kind of the current line, if the next line continues it.
-    going_on: Option<Kind>,
+    continued_kind: Option<LineKind>,
     corners: usize,
     faces: usize,
     points: usize,
@@ -62,7 +62,7 @@ pub(super) struct ObjLines<'a> {
     /// The material files that have been read so far.
     libraries: &'a Libraries<'a>,
     /// For each line that begins a group or an object, the number of polygons before it.
-    pub(super) starts: Vec<usize>,
+    pub(super) group_starts: Vec<usize>,
     polygons: usize,
     /// Whether any point has a colour.
     pub(super) has_colors: bool,
@@ -75,15 +75,15 @@ impl<'a> ObjLines<'a> {
         Self {
             rest: text,
             piece: b"",
-            behind: b"",
+            separator: b"",
             rest_of_line: "",
-            going_on: None,
+            continued_kind: None,
             corners: 0,
             faces: 0,
             points: 0,
             groups: 0,
             libraries,
-            starts: Vec::new(),
+            group_starts: Vec::new(),
             polygons: 0,
             has_colors: false,
             fault: None,
@@ -91,70 +91,72 @@ impl<'a> ObjLines<'a> {
     }
 
     fn next_piece(&mut self) -> Result<&'a [u8], Fault> {
-        if !self.behind.is_empty() {
-            return Ok(std::mem::take(&mut self.behind));
+        if !self.separator.is_empty() {
+            return Ok(std::mem::take(&mut self.separator));
         }
         if !self.rest_of_line.is_empty() {
-            self.behind = b"\n";
+            self.separator = b"\n";
             return Ok(std::mem::take(&mut self.rest_of_line).as_bytes());
         }
         while !self.rest.is_empty() {
             let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
             self.rest = rest;
             let line = line.trim_ascii();
-            let begun = self.going_on.take();
-            let kind = begun.unwrap_or_else(|| Kind::of(line));
-            let (line, goes_on) = match line.strip_suffix('\\') {
-                Some(start) if kind.can_go_on() => (start, !rest.is_empty()),
+            let begun_kind = self.continued_kind.take();
+            let kind = begun_kind.unwrap_or_else(|| LineKind::of(line));
+            let (line, continues) = match line.strip_suffix('\\') {
+                Some(start) if kind.can_continue() => (start, !rest.is_empty()),
                 _ => (line, false),
             };
-            self.going_on = goes_on.then_some(kind);
+            self.continued_kind = continues.then_some(kind);
             let line = match kind {
-                Kind::Point if begun.is_none() && !goes_on => {
-                    let point = three_numbers(line);
-                    let behind = line[point.len()..].split_ascii_whitespace();
-                    self.has_colors |= 3 <= behind.count();
+                LineKind::Point if begun_kind.is_none() && !continues => {
+                    let point = point_prefix(line);
+                    let extra_words = line[point.len()..].split_ascii_whitespace();
+                    self.has_colors |= 3 <= extra_words.count();
                     point
                 }
-                Kind::Material => self.libraries.known_name(line),
+                LineKind::Material => self.libraries.without_comment(line),
                 // Only on faces: names may contain a `#`.
-                Kind::Face => line.split('#').next().unwrap_or_default(),
+                LineKind::Face => line.split('#').next().unwrap_or_default(),
                 _ => line,
             };
-            self.count(kind, line, goes_on)?;
-            let behind: &[u8] = if goes_on { b" " } else { b"\n" };
-            if matches!(kind, Kind::Remark | Kind::Other) {
+            self.count(kind, line, continues)?;
+            let separator: &[u8] = if continues { b" " } else { b"\n" };
+            if matches!(kind, LineKind::Remark | LineKind::Other) {
                 continue;
             }
             // An empty piece would signal the end of the text.
             if line.is_empty() {
-                return Ok(behind);
+                return Ok(separator);
             }
-            if matches!(kind, Kind::Group | Kind::Material | Kind::Library)
-                && let Some((word, name)) = line.split_once('\t')
+            if matches!(
+                kind,
+                LineKind::Group | LineKind::Material | LineKind::Library
+            ) && let Some((word, name)) = line.split_once('\t')
                 && !word.contains(' ')
             {
                 // `tobj` recognises a name only after a space.
-                (self.behind, self.rest_of_line) = (b" ", name.trim_ascii_start());
+                (self.separator, self.rest_of_line) = (b" ", name.trim_ascii_start());
                 return Ok(word.as_bytes());
             }
-            self.behind = behind;
+            self.separator = separator;
             return Ok(line.as_bytes());
         }
         Ok(b"")
     }
 
-    fn count(&mut self, kind: Kind, line: &str, goes_on: bool) -> Result<(), Fault> {
+    fn count(&mut self, kind: LineKind, line: &str, continues: bool) -> Result<(), Fault> {
         match kind {
-            Kind::Point => {
+            LineKind::Point => {
                 self.points += 1;
                 check_points(self.points)
             }
-            Kind::Face => {
+            LineKind::Face => {
                 self.corners += line.split_ascii_whitespace().count();
                 // Do not count the first word, `f`.
                 check_faces(self.faces + self.corners.saturating_sub(3))?;
-                if !goes_on {
+                if !continues {
                     self.faces += self.corners.saturating_sub(3);
                     // Faces of fewer than three corners are points and lines, which `tobj` ignores.
                     self.polygons += usize::from(3 < self.corners);
@@ -162,20 +164,20 @@ impl<'a> ObjLines<'a> {
                 }
                 Ok(())
             }
-            Kind::Group | Kind::Material => {
+            LineKind::Group | LineKind::Material => {
                 self.groups += 1;
-                if kind == Kind::Group {
-                    self.starts.push(self.polygons);
+                if kind == LineKind::Group {
+                    self.group_starts.push(self.polygons);
                 }
                 check_groups(self.groups)
             }
-            Kind::Library | Kind::Remark | Kind::Other => Ok(()),
+            LineKind::Library | LineKind::Remark | LineKind::Other => Ok(()),
         }
     }
 }
 
 /// Returns the start of a line: `v` and three numbers.
-fn three_numbers(line: &str) -> &str {
+fn point_prefix(line: &str) -> &str {
     let mut words = 0;
     let mut in_word = false;
     for (at, byte) in line.bytes().enumerate() {

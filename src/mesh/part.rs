@@ -27,12 +27,12 @@ impl MeshFile {
 }
 
 /// The note on colours of points, which scenes do not support.
-pub(super) const COLORS_OF_POINTS: &str = "colours of points or faces are left out";
+pub(super) const NOTE_POINT_COLORS: &str = "colours of points or faces are left out";
 
 /// The note on transparency, which scenes do not support.
-pub(super) const CLEAR: &str = "transparent materials are shown opaque";
+pub(super) const NOTE_TRANSPARENT: &str = "transparent materials are shown opaque";
 /// The note on emissive materials, which scenes do not support: only lights emit light.
-pub(super) const GLOWING: &str = "glowing materials do not glow";
+pub(super) const NOTE_EMISSIVE: &str = "glowing materials do not glow";
 
 /// A group or object of an OBJ file, a primitive of a glTF file, or the whole of an STL or PLY file.
 #[derive(Clone, Debug, PartialEq)]

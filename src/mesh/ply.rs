@@ -10,7 +10,7 @@ use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyType};
 
 use super::error::Fault;
 use super::limits::{check_faces, check_points};
-use super::part::{COLORS_OF_POINTS, MeshFile};
+use super::part::{MeshFile, NOTE_POINT_COLORS};
 use super::ply_element::{Element, is_corners, least_bytes};
 use super::polygon::{mend_fan, note_of_uncut};
 use super::triangles::{Triangles, out_of_range};
@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8], stem: &str) -> Result<MeshFile, Fault> {
     let triangles = Triangles::weld(points.len(), |index| points[index], faces.into_iter())?;
     let mut file = MeshFile::of_one(stem.to_owned(), triangles);
     if has_colors(&header) {
-        file.notes.push(COLORS_OF_POINTS.to_owned());
+        file.notes.push(NOTE_POINT_COLORS.to_owned());
     }
     file.notes.extend(note_of_uncut(uncut));
     Ok(file)
@@ -98,7 +98,7 @@ impl Body<'_> {
             match name.as_str() {
                 "vertex" => {
                     points.reserve_exact(element.count);
-                    self.each(element, |_, read| {
+                    self.read_each(element, |_, read| {
                         points.push(DVec3::from_array(read.position));
                         Ok(())
                     })?;
@@ -107,7 +107,7 @@ impl Body<'_> {
                     check_corners(element)?;
                     check_faces(element.count)?;
                     faces.reserve_exact(element.count);
-                    self.each(element, |number, read| {
+                    self.read_each(element, |number, read| {
                         let start = faces.len();
                         add_fan(&mut faces, number, &read.corners, vertices)?;
                         if faces.len() > start + 1 {
@@ -122,11 +122,11 @@ impl Body<'_> {
                 }
                 "tristrips" => {
                     check_corners(element)?;
-                    self.each(element, |number, read| {
+                    self.read_each(element, |number, read| {
                         add_strips(&mut faces, number, &read.corners, vertices)
                     })?;
                 }
-                _ => self.each(element, |_, _| Ok(()))?,
+                _ => self.read_each(element, |_, _| Ok(()))?,
             }
         }
         Ok(Polygons {
@@ -153,10 +153,10 @@ impl Body<'_> {
     }
 
     /// Reads all elements of a kind and passes them on, numbered from 1.
-    fn each(
+    fn read_each(
         &mut self,
         element: &ElementDef,
-        mut take: impl FnMut(usize, Element) -> Result<(), Fault>,
+        mut on_element: impl FnMut(usize, Element) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         // Elements without properties take no bytes, whatever their count.
         if element.properties.is_empty() {
@@ -174,7 +174,7 @@ impl Body<'_> {
                     .read_big_endian_element(&mut self.rest, element)
                     .map_err(|error| body_fault(&error, number, element))?,
             };
-            take(number, read).map_err(|fault| match fault {
+            on_element(number, read).map_err(|fault| match fault {
                 Fault::Refused { why, .. } if self.encoding == Encoding::Ascii => {
                     Fault::in_line(self.line - 1, why)
                 }

@@ -91,12 +91,12 @@ impl PropertyAccess for Element {
             Property::Int(value) => self.set_scalar(name, value.into()),
             Property::UInt(value) => self.set_scalar(name, value.into()),
             _ if !is_corners(name) => return PropertyAccessResult::Ignored,
-            Property::ListInt(list) => self.corners = widened(list),
-            Property::ListUInt(list) => self.corners = widened(list),
-            Property::ListShort(list) => self.corners = widened(list),
-            Property::ListUShort(list) => self.corners = widened(list),
-            Property::ListChar(list) => self.corners = widened(list),
-            Property::ListUChar(list) => self.corners = widened(list),
+            Property::ListInt(list) => self.corners = to_i64(list),
+            Property::ListUInt(list) => self.corners = to_i64(list),
+            Property::ListShort(list) => self.corners = to_i64(list),
+            Property::ListUShort(list) => self.corners = to_i64(list),
+            Property::ListChar(list) => self.corners = to_i64(list),
+            Property::ListUChar(list) => self.corners = to_i64(list),
             Property::ListFloat(_) | Property::ListDouble(_) => {
                 return PropertyAccessResult::UnsupportedType;
             }
@@ -105,7 +105,7 @@ impl PropertyAccess for Element {
     }
 }
 
-fn widened<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+fn to_i64<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
     list.into_iter().map(Into::into).collect()
 }
 

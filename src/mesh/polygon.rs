@@ -6,9 +6,9 @@ use crate::words::counted;
 
 /// Most corners of a polygon that is cut by ear clipping, which usually takes quadratic time.
 const MOST_CORNERS: usize = 4096;
-/// Largest turn (twice a triangle's area) that counts as straight, as a share of the squared size of the polygon, to
+/// Largest value of twice a triangle's area that counts as straight, as a share of the squared size of the polygon, to
 /// allow for rounding.
-const ROUNDED: f64 = 1e-12;
+const MAX_STRAIGHT_AREA: f64 = 1e-12;
 
 /// Replaces a fan around a polygon's first corner that leaves the outline, as in a concave polygon, by ear clipping
 /// (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). Keeps the fan if there is no ear because
@@ -32,11 +32,11 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bo
     if corners.len() > MOST_CORNERS {
         return true;
     }
-    let flat: Vec<DVec2> = corners
+    let projected: Vec<DVec2> = corners
         .iter()
-        .map(|&corner| seen_along(normal, point(corner)))
+        .map(|&corner| project_along(normal, point(corner)))
         .collect();
-    if let Some(ears) = ears(&flat) {
+    if let Some(ears) = ears(&projected) {
         for (face, ear) in fan.iter_mut().zip(ears) {
             *face = ear.map(|corner| corners[corner]);
         }
@@ -56,7 +56,7 @@ pub(super) fn note_of_uncut(count: usize) -> Option<String> {
 }
 
 /// Projects a point along the largest axis of the normal, so that what is counter-clockwise around it stays so.
-fn seen_along(normal: DVec3, point: DVec3) -> DVec2 {
+fn project_along(normal: DVec3, point: DVec3) -> DVec2 {
     let size = normal.abs();
     if size.x >= size.y && size.x >= size.z {
         DVec2::new(point.y, point.z * normal.x.signum())
@@ -68,59 +68,61 @@ fn seen_along(normal: DVec3, point: DVec3) -> DVec2 {
 }
 
 /// Twice the signed area of a triangle, positive if it is counter-clockwise.
-fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+fn double_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
 
 /// Cuts a counter-clockwise polygon into triangles, which are given by indices into `points`; `None` if it cannot be
 /// cut.
 fn ears(points: &[DVec2]) -> Option<Vec<[usize; 3]>> {
-    let rounded = rounding(points);
-    let mut left: Vec<usize> = (0..points.len()).collect();
+    let tolerance = straight_tolerance(points);
+    let mut remaining: Vec<usize> = (0..points.len()).collect();
     let mut ears = Vec::with_capacity(points.len());
-    let (mut at, mut tried) = (0, 0);
-    while left.len() > 3 {
-        let count = left.len();
-        let around =
-            |at: usize| [(at + count - 1) % count, at, (at + 1) % count].map(|at| left[at]);
-        let turn_at = |at: &usize| turn_of(points, around(*at)).abs();
-        let is_ear = is_ear(points, &left, around(at), rounded);
+    let (mut index, mut tried) = (0, 0);
+    while remaining.len() > 3 {
+        let count = remaining.len();
+        let triangle_at = |index: usize| {
+            [(index + count - 1) % count, index, (index + 1) % count].map(|index| remaining[index])
+        };
+        let double_area_at = |index: &usize| double_area_of(points, triangle_at(*index)).abs();
+        let is_ear = is_ear(points, &remaining, triangle_at(index), tolerance);
         if is_ear || tried == count {
             // Without an ear, a corner on a straight line is cut off, as a triangle without area.
-            let straightest = || (0..count).min_by(|a, b| turn_at(a).total_cmp(&turn_at(b)));
-            let cut = if is_ear { Some(at) } else { straightest() };
-            let cut = cut.filter(|at| is_ear || turn_at(at) <= rounded)?;
-            ears.push(around(cut));
-            left.remove(cut);
+            let straightest =
+                || (0..count).min_by(|a, b| double_area_at(a).total_cmp(&double_area_at(b)));
+            let cut = if is_ear { Some(index) } else { straightest() };
+            let cut = cut.filter(|index| is_ear || double_area_at(index) <= tolerance)?;
+            ears.push(triangle_at(cut));
+            remaining.remove(cut);
             // The corner before it may have become an ear, as along an arc.
-            at = cut.checked_sub(1).unwrap_or(left.len() - 1);
+            index = cut.checked_sub(1).unwrap_or(remaining.len() - 1);
             tried = 0;
         } else {
-            at += 1;
+            index += 1;
             tried += 1;
         }
-        at %= left.len();
+        index %= remaining.len();
     }
-    ears.push([left[0], left[1], left[2]]);
+    ears.push([remaining[0], remaining[1], remaining[2]]);
     Some(ears)
 }
 
-/// Returns the largest turn of three points that counts as straight, for a polygon of this size.
-fn rounding(points: &[DVec2]) -> f64 {
+/// Returns the largest double area of three points that counts as straight, for a polygon of this size.
+fn straight_tolerance(points: &[DVec2]) -> f64 {
     let start = points.first().copied().unwrap_or_default();
-    let around = points.iter().fold((start, start), |(least, most), &point| {
+    let bounds = points.iter().fold((start, start), |(least, most), &point| {
         (least.min(point), most.max(point))
     });
-    let size = (around.1 - around.0).element_sum();
-    ROUNDED * size * size
+    let size = (bounds.1 - bounds.0).element_sum();
+    MAX_STRAIGHT_AREA * size * size
 }
 
-fn turn_of(points: &[DVec2], [a, b, c]: [usize; 3]) -> f64 {
-    turn(points[a], points[b], points[c])
+fn double_area_of(points: &[DVec2], [a, b, c]: [usize; 3]) -> f64 {
+    double_area(points[a], points[b], points[c])
 }
 
 /// Returns whether a corner can be cut off: it is convex, and no other corner lies in its triangle.
-fn is_ear(points: &[DVec2], left: &[usize], ear: [usize; 3], rounded: f64) -> bool {
+fn is_ear(points: &[DVec2], remaining: &[usize], ear: [usize; 3], tolerance: f64) -> bool {
     let [a, b, c] = ear.map(|corner| points[corner]);
     let is_within = |&other: &usize| {
         let p = points[other];
@@ -128,11 +130,11 @@ fn is_ear(points: &[DVec2], left: &[usize], ear: [usize; 3], rounded: f64) -> bo
         p != a
             && p != b
             && p != c
-            && turn(a, b, p) >= -rounded
-            && turn(b, c, p) >= -rounded
-            && turn(c, a, p) >= -rounded
+            && double_area(a, b, p) >= -tolerance
+            && double_area(b, c, p) >= -tolerance
+            && double_area(c, a, p) >= -tolerance
     };
-    turn(a, b, c) > rounded && !left.iter().any(is_within)
+    double_area(a, b, c) > tolerance && !remaining.iter().any(is_within)
 }
 
 #[cfg(test)]

@@ -51,19 +51,19 @@ pub const SOLIDS: [Solid; 6] = [
     flat("Tetrahedron", tetrahedron),
     round("Icosphere", |size| icosphere(size / 2.0)),
     round("Cylinder", |size| {
-        spun(&[(size / 2.0, size / 2.0), (size / 2.0, -size / 2.0)])
+        revolved(&[(size / 2.0, size / 2.0), (size / 2.0, -size / 2.0)])
     }),
     round("Cone", |size| {
-        spun(&[(0.0, size / 2.0), (size / 2.0, -size / 2.0)])
+        revolved(&[(0.0, size / 2.0), (size / 2.0, -size / 2.0)])
     }),
     round("Torus", torus),
 ];
 
 fn cuboid(size: f64) -> Triangles {
     let half = size / 2.0;
-    let corner = |at: u32| {
-        let part = |bit: u32| if at >> bit & 1 == 1 { half } else { -half };
-        DVec3::new(part(0), part(1), part(2))
+    let corner = |index: u32| {
+        let coordinate = |bit: u32| if index >> bit & 1 == 1 { half } else { -half };
+        DVec3::new(coordinate(0), coordinate(1), coordinate(2))
     };
     let sides = [
         [0, 4, 6, 2],
@@ -93,11 +93,11 @@ fn tetrahedron(size: f64) -> Triangles {
 
 /// Makes the solid of revolution of an outline of (radius, height), from the top down, around y. Ends that do not
 /// come to a point are closed by flat discs.
-fn spun(outline: &[(f64, f64)]) -> Triangles {
+fn revolved(outline: &[(f64, f64)]) -> Triangles {
     let mut points = Vec::new();
     let mut rings: Vec<Vec<u32>> = Vec::new();
-    let mut add = |place: DVec3| {
-        points.push(place);
+    let mut add = |point: DVec3| {
+        points.push(point);
         points.len() as u32 - 1
     };
     let first = outline.first().map(|&(_, height)| (0.0, height));
@@ -108,11 +108,11 @@ fn spun(outline: &[(f64, f64)]) -> Triangles {
         rings.push(if radius == 0.0 {
             vec![add(DVec3::Y * height); SIDES as usize]
         } else {
-            let place = |angle: f64| DVec3::new(angle.cos() * radius, height, angle.sin() * radius);
-            angles.map(|angle| add(place(angle))).collect()
+            let point = |angle: f64| DVec3::new(angle.cos() * radius, height, angle.sin() * radius);
+            angles.map(|angle| add(point(angle))).collect()
         });
     }
-    Triangles::of(points, between(&rings))
+    Triangles::of(points, faces_between(&rings))
 }
 
 fn torus(size: f64) -> Triangles {
@@ -131,11 +131,11 @@ fn torus(size: f64) -> Triangles {
             }));
         }
     }
-    Triangles::of(points, between(&rings))
+    Triangles::of(points, faces_between(&rings))
 }
 
 /// The faces between consecutive rings of points, each of which lies below or outside the previous one.
-fn between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
+fn faces_between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
     let mut faces = Vec::new();
     for [upper, lower] in rings.array_windows() {
         for side in 0..upper.len() {

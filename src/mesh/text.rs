@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 
 /// Byte order mark, which some editors write at the start of a text.
-const MARK: &[u8] = "\u{feff}".as_bytes();
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
 /// Strips a byte order mark.
 pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(MARK).unwrap_or(bytes)
+    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
 }
 
 /// Decodes a text. Lines that are not UTF-8 are read as Latin-1, which keeps different names different. Carriage
@@ -46,13 +46,13 @@ fn from_utf16(bytes: &[u8]) -> Option<String> {
         [0xfe, 0xff, rest @ ..] => (u16::from_be_bytes, rest),
         _ => return None,
     };
-    let letters: Vec<u16> = bytes
+    let units: Vec<u16> = bytes
         .as_chunks()
         .0
         .iter()
         .map(|&pair| order(pair))
         .collect();
-    Some(String::from_utf16_lossy(&letters))
+    Some(String::from_utf16_lossy(&units))
 }
 
 #[cfg(test)]

@@ -42,9 +42,10 @@ impl Triangles {
                 return Err(fault.to_string());
             }
         }
-        let is_place = |point: &DVec3| point.is_finite() && point.abs().max_element() <= FARTHEST;
-        match points.iter().position(|point| !is_place(point)) {
-            Some(wrong) => Err(not_a_place(wrong)),
+        let is_in_bounds =
+            |point: &DVec3| point.is_finite() && point.abs().max_element() <= MAX_ABS_COORDINATE;
+        match points.iter().position(|point| !is_in_bounds(point)) {
+            Some(wrong) => Err(out_of_bounds(wrong)),
             None => Ok(Self::of(points, faces)),
         }
     }
@@ -67,13 +68,13 @@ impl Triangles {
         self.fingerprint.get_or_init(|| {
             let mut hasher = blake3::Hasher::new();
             let mut bytes = Vec::new();
-            for points in self.points.chunks(HASHED) {
+            for points in self.points.chunks(HASH_CHUNK) {
                 bytes.clear();
                 let parts = points.iter().flat_map(DVec3::to_array);
                 bytes.extend(parts.flat_map(f64::to_le_bytes));
                 hasher.update(&bytes);
             }
-            for faces in self.faces.chunks(HASHED) {
+            for faces in self.faces.chunks(HASH_CHUNK) {
                 bytes.clear();
                 bytes.extend(faces.as_flattened().iter().flat_map(|i| i.to_le_bytes()));
                 hasher.update(&bytes);
@@ -97,13 +98,13 @@ impl Triangles {
         // Digits of points are averaged over a sample; those of faces are taken from the largest index.
         let step = self.points.len() / MEASURED_POINTS + 1;
         let digits = |point: &DVec3| format!("{}{}{}", point.x, point.y, point.z).len();
-        let some = self.points.iter().step_by(step);
-        let (count, bytes) = some.fold((0, 0), |(count, bytes), point| {
-            (count + 1, bytes + digits(point) + AROUND)
+        let sampled = self.points.iter().step_by(step);
+        let (count, bytes) = sampled.fold((0, 0), |(count, bytes), point| {
+            (count + 1, bytes + digits(point) + SEPARATOR_BYTES)
         });
         let points = self.points.len() as u64 * bytes as u64 / count.max(1);
         let digits = self.points.len().max(1).ilog10() as usize + 1;
-        points + (self.faces.len() * (3 * digits + AROUND)) as u64
+        points + (self.faces.len() * (3 * digits + SEPARATOR_BYTES)) as u64
     }
 
     /// The corners of each triangle.
@@ -131,9 +132,9 @@ impl Triangles {
         let mut welder = Welder {
             points: Vec::new(),
             faces: Vec::new(),
-            numbers: vec![UNKNOWN; count],
+            new_indices: vec![UNKNOWN; count],
             // Grown on demand: an oversized table scatters its entries in memory, which is slow.
-            places: HashMap::new(),
+            index_of_position: HashMap::new(),
         };
         for (number, corners) in faces.enumerate() {
             let indices = corners.map(|corner| corner as usize);
@@ -142,8 +143,8 @@ impl Triangles {
             }
             let points = indices.map(&point);
             for (index, point) in indices.iter().zip(points) {
-                if !point.is_finite() || point.abs().max_element() > FARTHEST {
-                    return Err(Fault::new(not_a_place(index + 1)));
+                if !point.is_finite() || point.abs().max_element() > MAX_ABS_COORDINATE {
+                    return Err(Fault::new(out_of_bounds(index + 1)));
                 }
             }
             let [a, b, c] = points;
@@ -178,15 +179,15 @@ impl Triangles {
 /// Number of points, roughly, whose digits are counted.
 const MEASURED_POINTS: usize = 100;
 /// Bytes of brackets, commas and spaces around three numbers in a scene file.
-const AROUND: usize = 8;
+const SEPARATOR_BYTES: usize = 8;
 /// Points or faces that are hashed at once.
-const HASHED: usize = 1024;
+const HASH_CHUNK: usize = 1024;
 
 /// Largest absolute coordinate in a scene, in world units.
-pub const FARTHEST: f64 = 1e12;
+pub const MAX_ABS_COORDINATE: f64 = 1e12;
 
 /// The error message for a point that is not finite or out of range.
-fn not_a_place(point: usize) -> String {
+fn out_of_bounds(point: usize) -> String {
     format!("point {point} has a coordinate that is not a finite number within 1e12 of 0")
 }
 
@@ -202,7 +203,7 @@ pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: us
 pub fn are_closed(triangles: impl Iterator<Item = [DVec3; 3]>) -> bool {
     let mut edges: HashMap<([u64; 3], [u64; 3]), u32> = HashMap::new();
     for corners in triangles {
-        let [a, b, c] = corners.map(place_key);
+        let [a, b, c] = corners.map(position_key);
         for edge in [(a, b), (b, c), (c, a)] {
             *edges.entry(edge).or_default() += 1;
         }
@@ -213,7 +214,7 @@ pub fn are_closed(triangles: impl Iterator<Item = [DVec3; 3]>) -> bool {
 }
 
 /// A hash key for a position: equal positions have equal keys.
-pub fn place_key(point: DVec3) -> [u64; 3] {
+pub fn position_key(point: DVec3) -> [u64; 3] {
     // Adding zero turns −0 into 0, which is the same position.
     (point + DVec3::ZERO).to_array().map(f64::to_bits)
 }
@@ -226,18 +227,18 @@ struct Welder {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     /// For each point of the file, its index in the mesh.
-    numbers: Vec<u32>,
-    places: HashMap<[u64; 3], u32>,
+    new_indices: Vec<u32>,
+    index_of_position: HashMap<[u64; 3], u32>,
 }
 
 impl Welder {
     fn add(&mut self, indices: [usize; 3], points: [DVec3; 3]) {
         let mut face = [0; 3];
         for ((corner, index), point) in face.iter_mut().zip(indices).zip(points) {
-            if self.numbers[index] == UNKNOWN {
-                self.numbers[index] = self.number_of(point);
+            if self.new_indices[index] == UNKNOWN {
+                self.new_indices[index] = self.number_of(point);
             }
-            *corner = self.numbers[index];
+            *corner = self.new_indices[index];
         }
         let [a, b, c] = face;
         self.faces.push([a, c, b]);
@@ -245,7 +246,10 @@ impl Welder {
 
     fn number_of(&mut self, point: DVec3) -> u32 {
         let next = self.points.len() as u32;
-        let number = *self.places.entry(place_key(point)).or_insert(next);
+        let number = *self
+            .index_of_position
+            .entry(position_key(point))
+            .or_insert(next);
         if number == next {
             self.points.push(point + DVec3::ZERO);
         }

@@ -39,14 +39,14 @@ impl<R: Real> Balls<R> {
 
 /// The bounding balls of all bounded primitives, with their numbers.
 pub fn balls_of<R: Real>(primitives: &Primitives<R>) -> Vec<(u32, Ball)> {
-    let mut balls = BallsOf(Vec::new());
+    let mut balls = BallCollector(Vec::new());
     primitives.visit(&mut balls);
     balls.0
 }
 
-struct BallsOf(Vec<(u32, Ball)>);
+struct BallCollector(Vec<(u32, Ball)>);
 
-impl<R: Real> Visit<R> for BallsOf {
+impl<R: Real> Visit<R> for BallCollector {
     fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], first: usize) {
         let balls = primitives.iter().enumerate();
         let balls = balls.filter_map(|(index, primitive)| {

@@ -38,9 +38,11 @@ impl Borders {
             corners,
             edges: &edges,
         };
-        let alone = edges.alone().into_iter();
+        let border_faces = edges.border_faces().into_iter();
         Self {
-            widths: alone.map(|face| (face, surface.width(face))).collect(),
+            widths: border_faces
+                .map(|face| (face, surface.width(face)))
+                .collect(),
             is_closed: edges.are_closed(),
             connected: parts(&mut edges.pairs()),
             of_one_material: are_different.then(|| parts(&mut edges.pairs().filter(is_alike))),
@@ -69,14 +71,14 @@ impl Edges {
     }
 
     /// Groups of entries that are the same edge.
-    fn each(&self) -> impl Iterator<Item = &[Edge]> {
+    fn groups(&self) -> impl Iterator<Item = &[Edge]> {
         self.0.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
     }
 
     /// The faces with an edge that no other face has.
-    fn alone(&self) -> Vec<u32> {
-        let alone = self.each().filter(|edge| edge.len() == 1);
-        let mut faces: Vec<u32> = alone.map(|edge| edge[0].2 / 2).collect();
+    fn border_faces(&self) -> Vec<u32> {
+        let border_faces = self.groups().filter(|edge| edge.len() == 1);
+        let mut faces: Vec<u32> = border_faces.map(|edge| edge[0].2 / 2).collect();
         faces.sort_unstable();
         faces.dedup();
         faces
@@ -91,17 +93,17 @@ impl Edges {
 
     /// Returns whether exactly two faces meet at every edge and traverse it in opposite directions.
     fn are_closed(&self) -> bool {
-        self.each()
+        self.groups()
             .all(|edge| matches!(edge, [one, two] if (one.2 ^ two.2) & 1 == 1))
     }
 
     /// The other face at an edge; `None` on a border, and where more than two faces meet.
-    fn other(&self, from: u32, to: u32, face: u32) -> Option<u32> {
+    fn across_edge(&self, from: u32, to: u32, face: u32) -> Option<u32> {
         let edge = (from.min(to), from.max(to));
         let first = self.0.partition_point(|&(a, b, _)| (a, b) < edge);
-        let here = self.0[first..].iter();
-        let mut here = here.take_while(|&&(a, b, _)| (a, b) == edge);
-        match (here.next(), here.next(), here.next()) {
+        let entries = self.0[first..].iter();
+        let mut entries = entries.take_while(|&&(a, b, _)| (a, b) == edge);
+        match (entries.next(), entries.next(), entries.next()) {
             (Some(&(_, _, one)), Some(&(_, _, two)), None) => {
                 Some(if one / 2 == face { two / 2 } else { one / 2 })
             }
@@ -124,7 +126,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
         for side in 0..3 {
             let points = self.points[face as usize];
             let (from, to) = (points[side], points[(side + 1) % 3]);
-            if self.edges.other(from, to, face).is_none() {
+            if self.edges.across_edge(from, to, face).is_none() {
                 least = least.min(self.walk(face, side));
             }
         }
@@ -133,10 +135,10 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
 
     /// The length of the straight line over the surface that starts perpendicularly across the middle of a side.
     fn walk(&self, mut face: u32, side: usize) -> f64 {
-        let mut entered = side;
+        let mut entry_side = side;
         let corners = (self.corners)(face);
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
-        let mut at = (from + to) * 0.5;
+        let mut point = (from + to) * 0.5;
         let mut direction = inwards(&corners, side);
         let mut length = 0.0;
         for _ in 0..LONGEST_WALK {
@@ -144,16 +146,17 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
             // The line crosses a side where its height above that side becomes zero.
             let crossing = |side: usize| {
                 let inwards = inwards(&corners, side);
-                let (height, speed) = ((at - corners[side]).dot(inwards), direction.dot(inwards));
+                let (height, speed) =
+                    ((point - corners[side]).dot(inwards), direction.dot(inwards));
                 if speed < 0.0 {
                     -height / speed
                 } else {
                     f64::INFINITY
                 }
             };
-            let sides = [(entered + 1) % 3, (entered + 2) % 3];
+            let sides = [(entry_side + 1) % 3, (entry_side + 2) % 3];
             let (one, two) = (crossing(sides[0]), crossing(sides[1]));
-            let (left, step) = if one < two {
+            let (exit_side, step) = if one < two {
                 (sides[0], one)
             } else {
                 (sides[1], two)
@@ -163,17 +166,17 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
                 return f64::INFINITY;
             }
             length += step.max(0.0);
-            at = at + direction * step;
+            point = point + direction * step;
             let points = self.points[face as usize];
-            let (a, b) = (points[left], points[(left + 1) % 3]);
-            let Some(next) = self.edges.other(a, b, face) else {
+            let (a, b) = (points[exit_side], points[(exit_side + 1) % 3]);
+            let Some(next) = self.edges.across_edge(a, b, face) else {
                 return length;
             };
             // Across the edge: the component along it is kept, the one across it goes on into the next face.
-            let along = (corners[(left + 1) % 3] - corners[left]).try_normalize();
+            let along = (corners[(exit_side + 1) % 3] - corners[exit_side]).try_normalize();
             let Some(along) = along else { return length };
-            let across = -direction.dot(inwards(&corners, left));
-            let kept = along * direction.dot(along);
+            let across = -direction.dot(inwards(&corners, exit_side));
+            let along_part = along * direction.dot(along);
             face = next;
             let points = self.points[face as usize];
             let is_entered = |side: &usize| {
@@ -183,8 +186,8 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
             let Some(side) = (0..3).find(is_entered) else {
                 return length;
             };
-            entered = side;
-            direction = kept + inwards(&(self.corners)(face), side) * across;
+            entry_side = side;
+            direction = along_part + inwards(&(self.corners)(face), side) * across;
         }
         f64::INFINITY
     }

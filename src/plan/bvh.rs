@@ -8,7 +8,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 pub use super::grouping::{Child, GROUP};
-use super::grouping::{WideNode, grouped};
+use super::grouping::{WideNode, group_boxes};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, Vec3};
 
@@ -52,7 +52,7 @@ pub struct Bvh<R> {
     /// The smallest thickness of any member.
     pub thinnest: R,
     /// Half of the total surface area of all boxes when the tree was built.
-    built: f64,
+    built_surface: f64,
 }
 
 impl Node {
@@ -87,18 +87,18 @@ impl Node {
     /// The content of the box at `index`.
     #[inline(always)]
     pub fn child(&self, index: usize) -> Child {
-        let held = self.children[index];
-        if held & IS_NODE == 0 {
-            Child::Member(held)
+        let entry = self.children[index];
+        if entry & IS_NODE == 0 {
+            Child::Member(entry)
         } else {
-            Child::Node(held & !IS_NODE)
+            Child::Node(entry & !IS_NODE)
         }
     }
 
     /// The members in the node's own boxes.
     pub fn members(&self) -> impl Iterator<Item = u32> {
-        let held = self.children[..self.count].iter().copied();
-        held.filter(|held| held & IS_NODE == 0)
+        let entries = self.children[..self.count].iter().copied();
+        entries.filter(|entry| entry & IS_NODE == 0)
     }
 
     /// Appends a box of another node; there must be fewer than [`GROUP`].
@@ -149,7 +149,7 @@ impl Node {
     /// The union of all boxes.
     fn around<R: Real>(&self) -> Member<R> {
         (0..self.count).fold(Member::nothing(), |around, index| {
-            around.and(&self.get(index))
+            around.union(&self.get(index))
         })
     }
 }
@@ -162,9 +162,9 @@ impl<R: Real> Member<R> {
         }
     }
 
-    fn and(&self, other: &Self) -> Self {
+    fn union(&self, other: &Self) -> Self {
         Self {
-            bounds: self.bounds.and(&other.bounds),
+            bounds: self.bounds.union(&other.bounds),
             thickness: self.thickness.min(other.thickness),
         }
     }
@@ -188,17 +188,17 @@ impl<R: Real> Bvh<R> {
             ..Node::empty()
         };
         let boxes: Vec<_> = boxes.collect();
-        let groups = grouped(&boxes);
+        let groups = group_boxes(&boxes);
         drop(boxes);
         let nodes = groups.into_iter().map(node).collect();
         let mut bvh = Self {
             nodes,
             bounds: BoundingBox::nothing(),
             thinnest: R::INFINITY,
-            built: 0.0,
+            built_surface: 0.0,
         };
         bvh.refit(member);
-        bvh.built = bvh.surface();
+        bvh.built_surface = bvh.surface();
         bvh
     }
 
@@ -207,7 +207,7 @@ impl<R: Real> Bvh<R> {
     pub fn refitted(&self, member: impl Fn(usize) -> Member<R>) -> Option<Self> {
         let mut bvh = self.clone();
         bvh.refit(member);
-        (bvh.surface() <= self.built * MAX_SURFACE_GROWTH).then_some(bvh)
+        (bvh.surface() <= self.built_surface * MAX_SURFACE_GROWTH).then_some(bvh)
     }
 
     /// Half of the total surface area of all boxes, to which the number of boxes that a random ray hits is
@@ -218,7 +218,7 @@ impl<R: Real> Bvh<R> {
             size.x * size.y + size.y * size.z + size.z * size.x
         };
         let nodes = self.nodes.iter();
-        let boxes = nodes.flat_map(|node| (0..node.count).map(|place| node.bounds(place)));
+        let boxes = nodes.flat_map(|node| (0..node.count).map(|index| node.bounds(index)));
         boxes.map(half_surface).sum()
     }
 
@@ -226,9 +226,9 @@ impl<R: Real> Bvh<R> {
     pub fn renumber(&mut self) -> Vec<u32> {
         let mut old = Vec::new();
         for node in Arc::make_mut(&mut self.nodes) {
-            for held in &mut node.children[..node.count] {
-                if *held & IS_NODE == 0 {
-                    old.push(std::mem::replace(held, old.len() as u32));
+            for entry in &mut node.children[..node.count] {
+                if *entry & IS_NODE == 0 {
+                    old.push(std::mem::replace(entry, old.len() as u32));
                 }
             }
         }
@@ -240,12 +240,12 @@ impl<R: Real> Bvh<R> {
         let nodes = Arc::make_mut(&mut self.nodes);
         // A node comes before its child nodes.
         for index in (0..nodes.len()).rev() {
-            for place in 0..nodes[index].count {
-                let held = match nodes[index].child(place) {
+            for slot in 0..nodes[index].count {
+                let fitted = match nodes[index].child(slot) {
                     Child::Member(number) => member(number as usize),
                     Child::Node(node) => nodes[node as usize].around(),
                 };
-                nodes[index].set(place, &held);
+                nodes[index].set(slot, &fitted);
             }
         }
         let all = self.nodes.first().map_or(Member::nothing(), Node::around);
@@ -263,7 +263,7 @@ impl<R: Real> Bvh<R> {
                 high: high.in_precision(),
             },
             thinnest: S::from_f64(self.thinnest.to_f64()),
-            built: self.built,
+            built_surface: self.built_surface,
         }
     }
 
@@ -288,7 +288,7 @@ fn below<R: Real>(number: R) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::grouping::DEEPEST;
+    use super::super::grouping::MAX_DEPTH;
     use super::*;
     use glam::DVec3;
     use proptest::prelude::*;
@@ -312,7 +312,7 @@ mod tests {
     }
 
     fn holds(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
-        outer.and(inner) == *outer
+        outer.union(inner) == *outer
     }
 
     #[test]
@@ -340,17 +340,17 @@ mod tests {
         let mut waiting: Vec<(u32, BoundingBox<f64>, usize)> = vec![(0, bvh.bounds, 1)];
         while let Some((index, around, depth)) = waiting.pop() {
             let node = &bvh.nodes[index as usize];
-            for place in 0..node.count {
-                let held = node.get(place);
-                if depth > DEEPEST || !holds(&around, &held.bounds) {
+            for slot in 0..node.count {
+                let fitted = node.get(slot);
+                if depth > MAX_DEPTH || !holds(&around, &fitted.bounds) {
                     return false;
                 }
-                match node.child(place) {
-                    Child::Node(node) => waiting.push((node, held.bounds, depth + 1)),
+                match node.child(slot) {
+                    Child::Node(node) => waiting.push((node, fitted.bounds, depth + 1)),
                     Child::Member(member) => {
                         found[member as usize] += 1;
                         let own = &members[member as usize].bounds;
-                        if !holds(&held.bounds, own) || !is_near(&held.bounds, own) {
+                        if !holds(&fitted.bounds, own) || !is_near(&fitted.bounds, own) {
                             return false;
                         }
                     }

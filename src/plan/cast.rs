@@ -4,38 +4,38 @@ use super::bvh::{Bvh, Child, GROUP};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
-/// Calls `tell` with each triangle that a ray hits and its distance, in any order; it returns the distance up to
-/// which the search goes on. Returns whether visiting `most` nodes was enough to find all hits.
+/// Calls `on_hit` with each triangle that a ray hits and its distance, in any order; it returns the distance up to
+/// which the search goes on. Returns whether visiting `max_nodes` nodes was enough to find all hits.
 pub fn cast<R: Real>(
     triangles: &[PackedTriangle<R>],
     bvh: &Bvh<R>,
-    ((origin, direction), most): ((Vec3<R>, Vec3<R>), usize),
-    mut tell: impl FnMut(u32, R) -> R,
+    ((origin, direction), max_nodes): ((Vec3<R>, Vec3<R>), usize),
+    mut on_hit: impl FnMut(u32, R) -> R,
 ) -> bool {
     let inverse = direction.to_array().map(|part| R::ONE / part);
     let mut reach = R::INFINITY;
     let mut waiting = vec![0];
-    let mut left = most;
+    let mut remaining = max_nodes;
     while let Some(node) = waiting
         .pop()
         .and_then(|index: u32| bvh.nodes.get(index as usize))
     {
-        if left == 0 {
+        if remaining == 0 {
             return false;
         }
-        left -= 1;
+        remaining -= 1;
         let (near, far) = slabs(&node.planes, origin.to_array(), inverse);
-        for place in 0..node.count {
+        for index in 0..node.count {
             // NaN satisfies no comparison: such a box is entered.
-            if near[place] > far[place] || near[place] > reach || far[place] < R::ZERO {
+            if near[index] > far[index] || near[index] > reach || far[index] < R::ZERO {
                 continue;
             }
-            match node.child(place) {
+            match node.child(index) {
                 Child::Node(inner) => waiting.push(inner),
                 Child::Member(face) => {
-                    let t = meet(&triangles[face as usize].corners, origin, direction);
+                    let t = intersect(&triangles[face as usize].corners, origin, direction);
                     if t < R::INFINITY {
-                        reach = tell(face, t);
+                        reach = on_hit(face, t);
                     }
                 }
             }
@@ -45,25 +45,30 @@ pub fn cast<R: Real>(
 }
 
 /// Two arbitrary directions; along none of the axes, so that they rarely hit edges.
-const WAYS_OUT: [[f64; 3]; 2] = [[0.312, 0.871, 0.379], [-0.523, 0.233, -0.817]];
+const PROBE_DIRECTIONS: [[f64; 3]; 2] = [[0.312, 0.871, 0.379], [-0.523, 0.233, -0.817]];
 
 /// Returns whether a point is outside of a closed mesh whose normals point outwards: a ray from it hits a front
 /// face first, and leaves the mesh as often as it enters it. A mesh may have components inside of others.
 pub fn is_outside<R: Real>(triangles: &[PackedTriangle<R>], bvh: &Bvh<R>, point: Vec3<R>) -> bool {
-    WAYS_OUT.iter().all(|way| {
-        let direction = Vec3::from(way.map(R::from_f64));
-        let (mut nearest, mut first, mut around) = (R::INFINITY, -1, 0);
-        let all = usize::MAX;
-        cast(triangles, bvh, ((point, direction), all), |face, t| {
-            let is_left = triangles[face as usize].normal.dot(direction) > R::ZERO;
-            let turn = if is_left { 1 } else { -1 };
-            around += turn;
-            if t < nearest {
-                (nearest, first) = (t, turn);
-            }
-            R::INFINITY
-        });
-        first == -1 && around == 0
+    PROBE_DIRECTIONS.iter().all(|probe| {
+        let direction = Vec3::from(probe.map(R::from_f64));
+        let (mut nearest, mut first, mut winding) = (R::INFINITY, -1, 0);
+        let unlimited = usize::MAX;
+        cast(
+            triangles,
+            bvh,
+            ((point, direction), unlimited),
+            |face, t| {
+                let is_exit = triangles[face as usize].normal.dot(direction) > R::ZERO;
+                let crossing = if is_exit { 1 } else { -1 };
+                winding += crossing;
+                if t < nearest {
+                    (nearest, first) = (t, crossing);
+                }
+                R::INFINITY
+            },
+        );
+        first == -1 && winding == 0
     })
 }
 
@@ -88,13 +93,13 @@ fn slabs<R: Real>(
 
 /// The distance at which a ray hits a triangle, from either side; infinity if it does not. Möller and Trumbore's
 /// formula: a ray that slips through an edge is one of many.
-fn meet<R: Real>([a, b, c]: &[Vec3<R>; 3], origin: Vec3<R>, direction: Vec3<R>) -> R {
+fn intersect<R: Real>([a, b, c]: &[Vec3<R>; 3], origin: Vec3<R>, direction: Vec3<R>) -> R {
     let (ab, ac) = (*b - *a, *c - *a);
     let across = direction.cross(ac);
     let determinant = ab.dot(across);
-    let from = origin - *a;
-    let u = from.dot(across) / determinant;
-    let turned = from.cross(ab);
+    let to_origin = origin - *a;
+    let u = to_origin.dot(across) / determinant;
+    let turned = to_origin.cross(ab);
     let v = direction.dot(turned) / determinant;
     let t = ac.dot(turned) / determinant;
     let is_inside = u >= R::ZERO && v >= R::ZERO && u + v <= R::ONE;

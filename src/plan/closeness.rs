@@ -38,7 +38,7 @@ const MOST_PIECES: usize = 64;
 const MOST_SPHERES: usize = 2_000;
 
 /// Returns whether a point is almost on a curved surface.
-pub fn is_low(shape: &Shape, point: DVec3) -> bool {
+pub fn is_almost_on(shape: &Shape, point: DVec3) -> bool {
     shape.height_per_radius(point) < MIN_HEIGHT_PER_RADIUS
 }
 
@@ -49,25 +49,25 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
         let height = piece.height(point).abs();
         height > 0.0 && height < least * extent
     };
-    let lights = || near_lights(scene);
+    let lights = || checked_lights(scene);
     let has_lights = lights().next().is_some();
     let has_few_faces = scene.faces() * lights().count() <= MOST_FACES;
     let visible = scene.visible_objects();
     let shapes = visible.map(|object| &object.shape);
     // Without lights only planes matter; the many other objects are skipped.
-    let mut looked_at = shapes.filter(|shape| has_lights || matches!(shape, Shape::Plane(_)));
-    looked_at.any(|shape| {
+    let mut relevant = shapes.filter(|shape| has_lights || matches!(shape, Shape::Plane(_)));
+    relevant.any(|shape| {
         if let Shape::Mesh(mesh) = shape {
             let least = MIN_HEIGHT_PER_EXTENT * extent;
             let bounds = shape.bounds();
             let is_in_box = |point| bounds.is_some_and(|bounds| is_near_box(point, bounds, least));
-            let by_face = |light: &Light| {
-                is_in_box(light.position) && is_by_face(mesh, light.position, least)
+            let close_to_face = |light: &Light| {
+                is_in_box(light.position) && is_close_to_face(mesh, light.position, least)
             };
-            return has_few_faces && lights().any(by_face);
+            return has_few_faces && lights().any(close_to_face);
         }
         let Some(piece) = shape.plane_piece() else {
-            return lights().any(|light| is_low(shape, light.position));
+            return lights().any(|light| is_almost_on(shape, light.position));
         };
         let least = if piece.outline == Outline::Endless {
             MIN_HEIGHT_PER_EXTENT
@@ -80,7 +80,7 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
 }
 
 /// Returns whether a point is nearer than `least` to a face of a mesh, and not in its plane.
-fn is_by_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
+fn is_close_to_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
     let is_near = |&[a, b, c]: &[DVec3; 3]| {
         let bounds = Shape::from(Triangle { a, b, c }).bounds();
         bounds.is_some_and(|bounds| is_near_box(point, bounds, least))
@@ -99,7 +99,7 @@ fn is_near_box(point: DVec3, (low, high): (DVec3, DVec3), least: f64) -> bool {
 }
 
 /// The lights to check: all of them, or none if there are very many.
-fn near_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
+fn checked_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     let pairs = scene.objects.len() * scene.lights.len();
     let are_few = pairs <= MOST_PAIRS;
     scene.visible_lights().filter(move |_| are_few)
@@ -113,7 +113,7 @@ pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
     let mut pieces = visible.filter_map(|object| object.shape.plane_piece());
     pieces.any(|piece| {
         let is_near = |point: DVec3| piece.distance_of_border(point) < least;
-        eye.is_some_and(is_near) || near_lights(scene).any(|light| is_near(light.position))
+        eye.is_some_and(is_near) || checked_lights(scene).any(|light| is_near(light.position))
     })
 }
 

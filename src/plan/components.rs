@@ -9,10 +9,10 @@ use crate::primitive::PackedTriangle;
 use crate::simd::Vec3;
 
 /// Volume that an open sheet may enclose through rounding alone, relative to its area to the power of 1.5.
-const ROUNDING: f64 = 1e-6;
-/// Number of connected triangles from which they count as one thing; with fewer, the edges between them are visible
+const MAX_OPEN_VOLUME: f64 = 1e-6;
+/// Number of connected triangles from which they count as one component; with fewer, the edges between them are visible
 /// as such.
-const MANY: u32 = 64;
+const LARGE_COMPONENT: u32 = 64;
 
 /// Returns six times the volume that the triangles enclose; negative if their normals point inwards.
 pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
@@ -24,14 +24,14 @@ pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
 
 /// Returns the component of each face, given the corner numbers of the faces; faces that share a corner are
 /// connected. Components are numbered from 0.
-pub fn parts(points: &[[u32; 3]]) -> Vec<u32> {
+pub fn components_at_corners(points: &[[u32; 3]]) -> Vec<u32> {
     let count = points.iter().flatten().max().map_or(0, |&last| last + 1);
     let mut sets = UnionFind::new(count);
     for &[a, b, c] in points {
         sets.join(a, b);
         sets.join(b, c);
     }
-    numbered(points.iter().map(|face| sets.first(face[0])))
+    numbered(points.iter().map(|face| sets.root(face[0])))
 }
 
 /// Returns the component of each of `count` faces, given pairs of faces that share an edge: faces that touch only
@@ -41,7 +41,7 @@ pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]
     for [one, other] in pairs {
         sets.join(one, other);
     }
-    numbered((0..count as u32).map(|face| sets.first(face)))
+    numbered((0..count as u32).map(|face| sets.root(face)))
 }
 
 /// Numbers the distinct values from 0, in the order of their first occurrence.
@@ -55,62 +55,65 @@ fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
 }
 
 /// Returns the first face of each face's component; empty if there is at most one component.
-pub fn first_of_parts(parts: &[u32]) -> Vec<u32> {
-    match &firsts(parts)[..] {
+pub fn first_of_components(components: &[u32]) -> Vec<u32> {
+    match &component_firsts(components)[..] {
         [] | [_] => Vec::new(),
-        firsts => parts.iter().map(|&part| firsts[part as usize].0).collect(),
+        firsts => components
+            .iter()
+            .map(|&component| firsts[component as usize].0)
+            .collect(),
     }
 }
 
 /// The first face of each component, and the number of its faces.
-fn firsts(parts: &[u32]) -> Vec<(u32, u32)> {
+fn component_firsts(components: &[u32]) -> Vec<(u32, u32)> {
     let mut firsts = Vec::new();
-    for (face, &part) in (0..).zip(parts) {
-        if part as usize == firsts.len() {
+    for (face, &component) in (0..).zip(components) {
+        if component as usize == firsts.len() {
             firsts.push((face, 0));
         }
-        firsts[part as usize].1 += 1;
+        firsts[component as usize].1 += 1;
     }
     firsts
 }
 
 /// Returns for each triangle whether its component faces inwards. The volume of an open component is measured from
 /// the mean of its corners, since a tube without ends has an inside, too.
-pub fn inside_out(triangles: &[PackedTriangle<f64>], parts: &[u32]) -> Vec<bool> {
-    let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
+pub fn inside_out(triangles: &[PackedTriangle<f64>], components: &[u32]) -> Vec<bool> {
+    let count = components.iter().max().map_or(0, |&last| last as usize + 1);
     let mut sums = vec![(DVec3::ZERO, 0.0); count];
-    for (triangle, &part) in triangles.iter().zip(parts) {
-        let (sum, count) = &mut sums[part as usize];
+    for (triangle, &component) in triangles.iter().zip(components) {
+        let (sum, count) = &mut sums[component as usize];
         *sum += corners(triangle).into_iter().sum::<DVec3>();
         *count += 3.0;
     }
     let mut volumes = vec![(0.0, 0.0); count];
-    for (triangle, &part) in triangles.iter().zip(parts) {
-        let (sum, count) = sums[part as usize];
+    for (triangle, &component) in triangles.iter().zip(components) {
+        let (sum, count) = sums[component as usize];
         let [a, b, c] = corners(triangle);
-        let (volume, area) = &mut volumes[part as usize];
+        let (volume, area) = &mut volumes[component as usize];
         *volume += volume_from(sum / count, [a, b, c]);
         *area += (b - a).cross(c - a).length();
     }
-    let is_inside_out = |&part: &u32| {
-        let (volume, area) = volumes[part as usize];
-        volume < -ROUNDING * area.powf(1.5)
+    let is_inside_out = |&component: &u32| {
+        let (volume, area) = volumes[component as usize];
+        volume < -MAX_OPEN_VOLUME * area.powf(1.5)
     };
-    parts.iter().map(is_inside_out).collect()
+    components.iter().map(is_inside_out).collect()
 }
 
-/// Returns for each triangle the first triangle of the thing that it is part of, as the faces of a mesh are: of its
-/// component, if that has many triangles. Empty if there is no such component.
-pub fn things(parts: &[u32]) -> Vec<Option<u32>> {
-    let found = firsts(parts);
-    if found.iter().all(|&(_, count)| count < MANY) {
+/// Returns for each triangle the first triangle of its component, if that has many triangles, as meshes have. Empty if
+/// there is no such component.
+pub fn large_components(components: &[u32]) -> Vec<Option<u32>> {
+    let found = component_firsts(components);
+    if found.iter().all(|&(_, count)| count < LARGE_COMPONENT) {
         return Vec::new();
     }
-    let thing = |&part: &u32| match found[part as usize] {
-        (first, MANY..) => Some(first),
+    let first_face = |&component: &u32| match found[component as usize] {
+        (first, LARGE_COMPONENT..) => Some(first),
         _ => None,
     };
-    parts.iter().map(thing).collect()
+    components.iter().map(first_face).collect()
 }
 
 fn corners(triangle: &PackedTriangle<f64>) -> [DVec3; 3] {
@@ -118,8 +121,8 @@ fn corners(triangle: &PackedTriangle<f64>) -> [DVec3; 3] {
 }
 
 /// Six times the volume of a tetrahedron, given by its apex and its base, which is clockwise seen from outside.
-fn volume_from(tip: DVec3, foot: [DVec3; 3]) -> f64 {
-    let [a, b, c] = foot.map(|corner| corner - tip);
+fn volume_from(apex: DVec3, base: [DVec3; 3]) -> f64 {
+    let [a, b, c] = base.map(|corner| corner - apex);
     a.dot(c.cross(b))
 }
 
@@ -133,16 +136,16 @@ impl UnionFind {
     }
 
     fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.first(a), self.first(b));
+        let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);
     }
 
     /// The first element of the set that contains `point`.
-    fn first(&mut self, mut point: u32) -> u32 {
+    fn root(&mut self, mut point: u32) -> u32 {
         while self.0[point as usize] != point {
-            let before = self.0[self.0[point as usize] as usize];
-            self.0[point as usize] = before;
-            point = before;
+            let grandparent = self.0[self.0[point as usize] as usize];
+            self.0[point as usize] = grandparent;
+            point = grandparent;
         }
         point
     }
@@ -172,16 +175,16 @@ mod tests {
         let (mut triangles, turned) = (ball(0.0, 0), ball(10.0, 0));
         let each = triangles.len();
         triangles.extend(turned);
-        triangles[each..].iter_mut().for_each(PackedTriangle::turn);
+        triangles[each..].iter_mut().for_each(PackedTriangle::flip);
         let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
         triangles.extend(PackedTriangle::of_mesh(sheet));
         // A tube without ends: the part of a ball near its equator.
         let mut tube = ball(20.0, 0);
         tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
-        tube.iter_mut().for_each(PackedTriangle::turn);
+        tube.iter_mut().for_each(PackedTriangle::flip);
         triangles.extend(tube);
-        let parts = parts(&number_corners(&triangles));
-        let inside_out = inside_out(&triangles, &parts);
+        let components = components_at_corners(&number_corners(&triangles));
+        let inside_out = inside_out(&triangles, &components);
         let (outwards, others) = inside_out.split_at(each);
         let (inwards, others) = others.split_at(each);
         assert!(outwards.iter().all(|is_out| !is_out));
@@ -192,25 +195,25 @@ mod tests {
 
     #[test]
     fn many_triangles_of_a_part_are_one_thing() {
-        let many = MANY as usize;
-        let parts = [vec![0; many], vec![1; many - 1], vec![2; many]].concat();
-        let things = things(&parts);
+        let many = LARGE_COMPONENT as usize;
+        let components = [vec![0; many], vec![1; many - 1], vec![2; many]].concat();
+        let things = large_components(&components);
         assert!(things[..many].iter().all(|thing| *thing == Some(0)));
         assert!(things[many..2 * many - 1].iter().all(Option::is_none));
-        let last = Some(2 * MANY - 1);
+        let last = Some(2 * LARGE_COMPONENT - 1);
         assert!(things[2 * many - 1..].iter().all(|thing| *thing == last));
-        assert!(super::things(&vec![0; many - 1]).is_empty());
+        assert!(super::large_components(&vec![0; many - 1]).is_empty());
     }
 
     #[test]
     fn faces_hang_together_along_edges() {
         // Faces 0, 2 and 3 are connected in a row, the other two are single.
-        let parts = components_along_edges(5, [[3, 2], [0, 3]].into_iter());
-        assert_eq!(parts, [0, 1, 0, 0, 2]);
-        assert_eq!(first_of_parts(&parts), [0, 1, 0, 0, 4]);
-        assert!(first_of_parts(&[0; 5]).is_empty());
+        let components = components_along_edges(5, [[3, 2], [0, 3]].into_iter());
+        assert_eq!(components, [0, 1, 0, 0, 2]);
+        assert_eq!(first_of_components(&components), [0, 1, 0, 0, 4]);
+        assert!(first_of_components(&[0; 5]).is_empty());
         // Faces that touch only at a corner are connected only if corners count.
         let touching = [[0, 1, 2], [2, 3, 4]];
-        assert_eq!(super::parts(&touching), [0, 0]);
+        assert_eq!(super::components_at_corners(&touching), [0, 0]);
     }
 }

@@ -12,21 +12,21 @@ use crate::scene::{Coincidence, List, Object, Overlap, Projection, Scene, Shape,
 
 /// Maximum number of objects that contain lights or the eye and are kept out of the tree; if there are more, all
 /// stay in it.
-const MOST_APART: usize = 256;
+const MOST_OUTSIDE_TREE: usize = 256;
 /// The same for objects that share a surface with others: more of them are found faster in the tree.
-const MOST_SHARING: usize = 32;
+const MOST_SHARING_OUTSIDE: usize = 32;
 
 /// Maximum number of pairs of an object and a light that are checked: ten milliseconds whenever either has changed.
 const MOST_PAIRS: usize = 1_000_000;
 
 /// Distance from a curved surface up to which a point counts as on it, in radii.
-const ON_ROUND: f64 = 1e-11;
+const ON_CURVED: f64 = 1e-11;
 
 /// Distance from a curved surface up to which a light may be on it, in radii.
-const NEAR_ROUND: f64 = 1e-5;
+const NEAR_CURVED: f64 = 1e-5;
 
 /// Objects by their indices in the scene's list.
-pub type Places = Vec<usize>;
+pub type ObjectIndices = Vec<usize>;
 
 /// The contacts in a picture.
 #[derive(Clone, Debug, Default)]
@@ -37,12 +37,12 @@ pub struct Contacts {
     pub shared: Vec<Coincidence>,
     /// The flat objects whose planes contain the eye, which sees at most their edges, or the whole window of
     /// parallel rays, which start behind them.
-    pub edge_on: Places,
+    pub edge_on: ObjectIndices,
     /// The curved object on whose surface the eye is.
     pub eye_on: Option<usize>,
     /// The contacts of the lights.
     pub lights: Arc<LightContacts>,
-    apart: BTreeSet<usize>,
+    outside_tree: BTreeSet<usize>,
     /// The objects in `shared` other than meshes: the numbers of their primitives are needed, in a list or in the
     /// tree.
     sharing: BTreeSet<usize>,
@@ -52,12 +52,12 @@ pub struct Contacts {
 #[derive(Clone, Debug, Default)]
 pub struct LightContacts {
     /// For each light of the scene, the flat objects whose planes contain it: they cast no shadow from it.
-    pub held_by: Vec<Places>,
+    pub held_by: Vec<ObjectIndices>,
     /// For each light, the first ball whose surface contains it: on one side that ball casts a shadow, which is
     /// decided exactly. For further balls, rounding decides.
     pub on_balls: Vec<Option<usize>>,
     /// The lights of the scene that may be on the surface of an object other than a mesh.
-    pub touching: Places,
+    pub touching: ObjectIndices,
 }
 
 impl LightContacts {
@@ -148,13 +148,13 @@ impl Contacts {
             contacts.add(*one);
         }
         let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
-        contacts.find_eye(scene, is_parallel);
-        contacts.set_apart(&scene.objects);
+        contacts.find_eye_contacts(scene, is_parallel);
+        contacts.find_outside_tree(&scene.objects);
         contacts
     }
 
     /// Finds what the eye is on, in one pass, as there may be many objects.
-    fn find_eye(&mut self, scene: &Scene, is_parallel: bool) {
+    fn find_eye_contacts(&mut self, scene: &Scene, is_parallel: bool) {
         let eye = scene.camera.position;
         let direction = unit(scene.camera.look_at).unwrap_or_default();
         let objects = scene.objects.iter().enumerate();
@@ -166,7 +166,7 @@ impl Contacts {
                 }
             } else if !is_parallel
                 && self.eye_on.is_none()
-                && shape.height_per_radius(eye) <= ON_ROUND
+                && shape.height_per_radius(eye) <= ON_CURVED
             {
                 self.eye_on = Some(index);
             }
@@ -183,45 +183,45 @@ impl Contacts {
 
     /// The objects that are kept out of the tree: those that are completely hidden, those that contain lights or
     /// the eye, and those that share a surface; the latter two only if they are not too many.
-    pub fn apart(&self) -> &BTreeSet<usize> {
-        &self.apart
+    pub fn outside_tree(&self) -> &BTreeSet<usize> {
+        &self.outside_tree
     }
 
     /// Returns whether the number that an object gets in the lists is needed.
     pub fn needs_number(&self, index: usize) -> bool {
-        self.apart.contains(&index) || self.sharing.contains(&index)
+        self.outside_tree.contains(&index) || self.sharing.contains(&index)
     }
 
-    fn set_apart(&mut self, objects: &List<Object>) {
+    fn find_outside_tree(&mut self, objects: &List<Object>) {
         let shared = self.shared.iter();
         let shared = shared.flat_map(|found| [found.later, found.earlier]);
-        let is_mesh = |place: &usize| matches!(objects[*place].shape, Shape::Mesh(_));
-        self.sharing = shared.filter(|place| !is_mesh(place)).collect();
+        let is_mesh = |index: &usize| matches!(objects[*index].shape, Shape::Mesh(_));
+        self.sharing = shared.filter(|index| !is_mesh(index)).collect();
         let LightContacts {
             held_by, on_balls, ..
         } = &*self.lights;
         let lights = held_by.iter().flatten().chain(on_balls.iter().flatten());
         let eye = self.edge_on.iter().chain(&self.eye_on).copied();
-        let held: BTreeSet<usize> = lights.copied().chain(eye).collect();
-        if held.len() <= MOST_APART {
-            self.apart = held;
+        let holders: BTreeSet<usize> = lights.copied().chain(eye).collect();
+        if holders.len() <= MOST_OUTSIDE_TREE {
+            self.outside_tree = holders;
         }
-        if self.sharing.len() <= MOST_SHARING {
-            self.apart.extend(&self.sharing);
+        if self.sharing.len() <= MOST_SHARING_OUTSIDE {
+            self.outside_tree.extend(&self.sharing);
         }
-        self.apart.extend(&self.covered);
+        self.outside_tree.extend(&self.covered);
     }
 }
 
 /// Returns whether a point may be on a curved object.
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
     let mut visible = objects.iter().filter(|object| object.visible);
-    visible.any(|object| object.shape.height_per_radius(point) < NEAR_ROUND)
+    visible.any(|object| object.shape.height_per_radius(point) < NEAR_CURVED)
 }
 
 /// Returns for each point the visible flat objects whose planes contain it.
-fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Places> {
-    let mut through = vec![Places::new(); points.len()];
+fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices> {
+    let mut through = vec![ObjectIndices::new(); points.len()];
     for (index, object) in objects.iter().enumerate() {
         let Some(piece) = object.shape.plane_piece().filter(|_| object.visible) else {
             continue;
@@ -241,7 +241,7 @@ fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
     let balls = objects.iter().enumerate();
     let balls: Vec<_> = balls.filter(|(_, object)| is_ball(object)).collect();
     let at = |point: &DVec3| {
-        let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_ROUND;
+        let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_CURVED;
         let mut balls = balls.iter();
         balls.find_map(|(index, ball)| holds(ball).then_some(*index))
     };
@@ -298,7 +298,7 @@ mod tests {
                     let first = primitives.firsts()[Kind::Triangle as usize];
                     let triangles = primitives.triangles.iter().enumerate();
                     triangles.map(move |(index, of)| {
-                        let thing = primitives.thing_of(first + index) - first;
+                        let thing = primitives.component_of(first + index) - first;
                         let thing = primitives.triangles[thing].corners;
                         format!("{:?} {} {:?} {thing:?}", of.corners, of.thickness, of.tip)
                     })

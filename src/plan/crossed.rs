@@ -25,11 +25,14 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     let geometry = plan.geometry.as_ref().filter(|_| plan.is_boxed)?;
     let all = plan.bounded();
     let mut tests = Tests::default();
-    let place =
+    let position =
         |step: u32, side: u32| (f64::from(step) + 0.5) / f64::from(LOOKED_AT) * f64::from(side);
     for row in 0..LOOKED_AT {
         for column in 0..LOOKED_AT {
-            let (x, y) = (place(column, request.width), place(row, request.height));
+            let (x, y) = (
+                position(column, request.width),
+                position(row, request.height),
+            );
             let (origin, direction) = plan.view.rays::<f64>(x, y);
             geometry.count(Ray { origin, direction }, &mut tests);
         }
@@ -38,9 +41,9 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     let [boxes, primitives] = [tests.boxes, tests.primitives].map(|tests| tests as f64 / rays);
     let tested = boxes + primitives;
     let boxes = format!("{boxes:.0}");
-    let es = if boxes == "1" { "" } else { "es" };
+    let plural = if boxes == "1" { "" } else { "es" };
     Some(format!(
-        "{:.2} % of the tests of this picture's camera rays: {boxes} box{es} and {primitives:.1} primitives instead of {all} for each",
+        "{:.2} % of the tests of this picture's camera rays: {boxes} box{plural} and {primitives:.1} primitives instead of {all} for each",
         (1.0 - tested / all as f64).max(0.0) * 100.0
     ))
 }
@@ -48,9 +51,9 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
 impl Geometry<f64> {
     fn count(&self, ray: Ray<f64>, tests: &mut Tests) {
         let listed = self.primitives.len();
-        let mut met = Vec::new();
-        self.bvh.pass(ray, tests, &mut met);
-        for member in met {
+        let mut hit_members = Vec::new();
+        self.bvh.collect_hits(ray, tests, &mut hit_members);
+        for member in hit_members {
             match (member as usize).checked_sub(listed) {
                 None => tests.primitives += 1,
                 Some(mesh) => {
@@ -59,9 +62,9 @@ impl Geometry<f64> {
                         origin: ray.origin - mesh.centre,
                         ..ray
                     };
-                    let mut met = Vec::new();
-                    mesh.mesh.bvh.pass(ray, tests, &mut met);
-                    tests.primitives += met.len() as u64;
+                    let mut hit_members = Vec::new();
+                    mesh.mesh.bvh.collect_hits(ray, tests, &mut hit_members);
+                    tests.primitives += hit_members.len() as u64;
                 }
             }
         }
@@ -69,14 +72,14 @@ impl Geometry<f64> {
 }
 
 impl Bvh<f64> {
-    /// Adds the members whose boxes a ray hits to `met`.
-    fn pass(&self, ray: Ray<f64>, tests: &mut Tests, met: &mut Vec<u32>) {
+    /// Adds the members whose boxes a ray hits to `hit_members`.
+    fn collect_hits(&self, ray: Ray<f64>, tests: &mut Tests, hit_members: &mut Vec<u32>) {
         let mut nodes = vec![0_u32];
         while let Some(node) = nodes.pop().and_then(|node| self.nodes.get(node as usize)) {
             tests.boxes += node.count as u64;
-            for index in (0..node.count).filter(|&index| is_passed(&node.bounds(index), &ray)) {
+            for index in (0..node.count).filter(|&index| is_hit(&node.bounds(index), &ray)) {
                 match node.child(index) {
-                    Child::Member(member) => met.push(member),
+                    Child::Member(member) => hit_members.push(member),
                     Child::Node(inner) => nodes.push(inner),
                 }
             }
@@ -85,7 +88,7 @@ impl Bvh<f64> {
 }
 
 /// Returns whether a ray hits a box; along its sides, the result may be either.
-fn is_passed(bounds: &BoundingBox<f64>, ray: &Ray<f64>) -> bool {
+fn is_hit(bounds: &BoundingBox<f64>, ray: &Ray<f64>) -> bool {
     let [low, high, origin, direction] =
         [bounds.low, bounds.high, ray.origin, ray.direction].map(Vec3::to_dvec3);
     let (one, other) = ((low - origin) / direction, (high - origin) / direction);

@@ -22,13 +22,13 @@ pub struct CulledFaces {
 }
 
 impl CulledFaces {
-    /// The faces that are turned to a light at `place`, relative to the middle of the mesh: rays to the light that
+    /// The faces that are turned to a light at `light`, relative to the middle of the mesh: rays to the light that
     /// leave a closed mesh through these faces have entered it through others.
-    fn towards<R: Real>(mesh: &PackedMesh<R>, place: Vec3<R>) -> Self {
-        let size = place.max_abs() + mesh.bvh.bounds.max_abs();
+    fn towards<R: Real>(mesh: &PackedMesh<R>, light: Vec3<R>) -> Self {
+        let size = light.max_abs() + mesh.bvh.bounds.max_abs();
         let margin = size * R::from_f64(FAR_CAUTION);
         Self::of(mesh, |face| {
-            margin < face.normal.dot(place - face.corners[0])
+            margin < face.normal.dot(light - face.corners[0])
         })
     }
 
@@ -54,7 +54,7 @@ impl CulledFaces {
     fn find_nodes<R: Real>(&mut self, bvh: &Bvh<R>) {
         // A node comes before its child nodes.
         for (index, node) in bvh.nodes.iter().enumerate().rev() {
-            let all = (0..node.count).all(|place| self.holds(node.child(place)));
+            let all = (0..node.count).all(|slot| self.holds(node.child(slot)));
             self.nodes[index / BITS] |= u64::from(all) << (index % BITS);
         }
     }
@@ -72,7 +72,7 @@ impl CulledFaces {
 
 /// Results for the previous picture, which the next one may reuse.
 #[derive(Clone, Debug, Default)]
-pub struct KeptCulledFaces<R> {
+pub struct CulledFacesCache<R> {
     known: HashMap<Key, Known<R>>,
     used: HashMap<Key, Known<R>>,
 }
@@ -87,24 +87,24 @@ struct Known<R> {
     culled_faces: Arc<CulledFaces>,
 }
 
-impl<R: Real> KeptCulledFaces<R> {
+impl<R: Real> CulledFacesCache<R> {
     /// Returns the faces of a mesh that rays to a light can skip.
     pub fn towards(&mut self, light: Vec3<R>, mesh: &MeshInstance<R>) -> Arc<CulledFaces> {
-        let place = light - mesh.centre;
-        let bits = place.to_array().map(|part| part.to_f64().to_bits());
+        let local_light = light - mesh.centre;
+        let bits = local_light.to_array().map(|part| part.to_f64().to_bits());
         let key = (Arc::as_ptr(&mesh.mesh).addr(), bits);
         let known = &mut self.known;
         let found = self.used.entry(key).or_insert_with(|| {
             known.remove(&key).unwrap_or_else(|| Known {
                 _mesh: Arc::clone(&mesh.mesh),
-                culled_faces: Arc::new(CulledFaces::towards(&mesh.mesh, place)),
+                culled_faces: Arc::new(CulledFaces::towards(&mesh.mesh, local_light)),
             })
         });
         Arc::clone(&found.culled_faces)
     }
 
     /// Ends a picture: drops the results that it did not use.
-    pub fn end(&mut self) {
+    pub fn end_picture(&mut self) {
         self.known = std::mem::take(&mut self.used);
     }
 }
@@ -125,7 +125,7 @@ mod tests {
             assert_eq!(culled_faces.holds(Child::Member(face)), is_up, "{face}");
         }
         for (index, node) in mesh.bvh.nodes.iter().enumerate() {
-            let all = (0..node.count).all(|place| culled_faces.holds(node.child(place)));
+            let all = (0..node.count).all(|slot| culled_faces.holds(node.child(slot)));
             assert_eq!(
                 culled_faces.holds(Child::Node(index as u32)),
                 all,

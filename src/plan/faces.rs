@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::culled_faces::KeptCulledFaces;
+use super::culled_faces::CulledFacesCache;
 use super::pack::Plan;
 use super::request::RenderRequest;
 use super::solids::Solids;
@@ -36,7 +36,7 @@ impl<R: Real> Plan<R> {
         &mut self,
         scene: &Scene,
         request: &RenderRequest,
-        kept: &mut KeptCulledFaces<R>,
+        cache: &mut CulledFacesCache<R>,
     ) {
         let projection = request.projection_of(&scene.camera);
         let Some(geometry) = &self.geometry else {
@@ -48,18 +48,18 @@ impl<R: Real> Plan<R> {
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);
         // A face that is shaded as curved also receives light from below its plane.
         let meshes = geometry.meshes.iter().enumerate();
-        let seen = meshes.map(|(index, mesh)| {
+        let are_outside = meshes.map(|(index, mesh)| {
             let holds_eye = self.unseen_faces.get(index).is_some_and(Option::is_some);
             mesh.mesh.smooth.is_empty() && !holds_eye && mesh.is_seen_from_outside(eye)
         });
-        let seen: Vec<bool> = seen.collect();
+        let are_outside: Vec<bool> = are_outside.collect();
         for light in &mut self.lights {
             let mut holding = std::mem::take(&mut light.culled_faces).into_iter();
-            let meshes = geometry.meshes.iter().zip(&seen);
-            let culled_faces = meshes.map(|(mesh, seen)| {
+            let meshes = geometry.meshes.iter().zip(&are_outside);
+            let culled_faces = meshes.map(|(mesh, are_outside)| {
                 holding.next().flatten().or_else(|| {
-                    let are_idle = *seen && mesh.is_seen_from_outside(light.position);
-                    are_idle.then(|| kept.towards(light.position, mesh))
+                    let can_skip = *are_outside && mesh.is_seen_from_outside(light.position);
+                    can_skip.then(|| cache.towards(light.position, mesh))
                 })
             });
             light.culled_faces = culled_faces.collect();

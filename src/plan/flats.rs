@@ -58,8 +58,8 @@ fn largest_of<R: Real>(primitives: &Primitives<R>) -> R {
         let flats = primitives.iter().filter_map(P::flat);
         flats.map(|(_, extent)| extent).fold(R::ZERO, R::max)
     }
-    let ending = largest(&primitives.discs).max(largest(&primitives.triangles));
-    ending.max(largest(&primitives.spheres))
+    let flat_extent = largest(&primitives.discs).max(largest(&primitives.triangles));
+    flat_extent.max(largest(&primitives.spheres))
 }
 
 /// Calls [`Primitive::flat`].

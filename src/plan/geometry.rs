@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
-use super::components::things;
+use super::components::large_components;
 use super::contacts::LightContacts;
-use super::culled_faces::KeptCulledFaces;
+use super::culled_faces::CulledFacesCache;
 use super::meshes::Meshes;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
 use super::request::RenderRequest;
@@ -30,15 +30,15 @@ pub const MOST_LISTED_TRIANGLES: usize = 128;
 /// Between these numbers, a tree is used if the objects fill a space whose every side is this many times as long as
 /// they are large: those visible in a tile are then scattered, and most may be in front of its lights. With 60 to
 /// 384 balls in such a cloud, a list takes 1.2 to 5 times as long.
-const DEEPEST_FIELD: f64 = 4.0;
+const MIN_DEPTH_IN_SIZES: f64 = 4.0;
 /// Pixels per object below which a shallower field gets a tree: it saves a third with half as many pixels, and
 /// loses as much with ten times as many.
-const PIXELS_IN_TREES: u64 = 2000;
+const PIXELS_PER_OBJECT: u64 = 2000;
 /// The same with adaptive sampling, whose rays also look for things beside them, which costs more in a tree.
-const PIXELS_IN_SMOOTH_TREES: u64 = 500;
+const ADAPTIVE_PIXELS_PER_OBJECT: u64 = 500;
 
 /// Maximum number of meshes for which the outline uses the boxes of the meshes' own roots.
-const FINE_OUTLINE: usize = 4;
+const MAX_FINE_MESHES: usize = 4;
 
 /// The number of primitives of each kind, and of meshes.
 type Counts = ([usize; KINDS], usize);
@@ -56,7 +56,7 @@ pub struct Geometry<R> {
     /// Upper bound of the height above hits at which secondary rays start.
     pub lift: R,
     /// For each kind of primitive, the indices of the objects in the scene's list.
-    places: [Vec<usize>; KINDS],
+    indices: [Vec<usize>; KINDS],
     /// Whether the tree was refitted from that of an earlier picture instead of built.
     is_refitted: bool,
 }
@@ -68,8 +68,8 @@ pub struct PlanCache<R> {
     coincidences: Option<(List<Object>, DVec3, Arc<[Coincidence]>)>,
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
     /// Packed meshes for the next picture, in addition to those of the last one.
-    others: Meshes<R>,
-    culled_faces: KeptCulledFaces<R>,
+    extra_meshes: Meshes<R>,
+    culled_faces: CulledFacesCache<R>,
 }
 
 /// Results of the previous plan that the next one may reuse, in both precisions.
@@ -91,17 +91,17 @@ impl Planner {
     /// Packs the meshes of a scene that is planned in both precisions: each mesh once for both.
     pub fn pack_meshes(&mut self, scene: &Scene) {
         let Self { single, double } = self;
-        if single.is_of(&scene.objects) && double.is_of(&scene.objects) {
+        if single.is_for(&scene.objects) && double.is_for(&scene.objects) {
             return;
         }
         let (mut rounded, mut packed) = (single.meshes(), double.meshes());
         let members = scene.objects.iter();
-        for object in members.filter(|object| belongs_in_tree(object)) {
+        for object in members.filter(|one| belongs_in_tree(one)) {
             if let Shape::Mesh(mesh) = &object.shape {
-                rounded.take_over(&packed.ready(mesh));
+                rounded.take_over(&packed.get_or_pack(mesh));
             }
         }
-        (single.others, double.others) = (rounded, packed);
+        (single.extra_meshes, double.extra_meshes) = (rounded, packed);
     }
 }
 
@@ -113,22 +113,22 @@ struct Source {
     /// The names of the color packs in order: primitives store their indices.
     packs: Vec<String>,
     /// The indices of objects that are kept out of the geometry.
-    apart: BTreeSet<usize>,
+    excluded: BTreeSet<usize>,
 }
 
 impl Source {
-    fn of(scene: &Scene, centre: DVec3, apart: &BTreeSet<usize>) -> Self {
+    fn of(scene: &Scene, centre: DVec3, excluded: &BTreeSet<usize>) -> Self {
         Self {
             objects: scene.objects.clone(),
             centre,
             packs: scene.color_packs.keys().cloned().collect(),
-            apart: apart.clone(),
+            excluded: excluded.clone(),
         }
     }
 
-    fn is_of(&self, scene: &Scene, centre: DVec3, apart: &BTreeSet<usize>) -> bool {
+    fn is_for(&self, scene: &Scene, centre: DVec3, excluded: &BTreeSet<usize>) -> bool {
         self.centre == centre
-            && self.apart == *apart
+            && self.excluded == *excluded
             && self.objects.is_same(&scene.objects)
             && self.packs.iter().eq(scene.color_packs.keys())
     }
@@ -136,8 +136,8 @@ impl Source {
 
 impl<R: Real> PlanCache<R> {
     fn share_meshes(&mut self, other: &Self) {
-        self.others = Meshes::default();
-        self.others.extend(other.last_meshes());
+        self.extra_meshes = Meshes::default();
+        self.extra_meshes.extend(other.last_meshes());
     }
 
     /// The packed meshes of the last picture.
@@ -148,27 +148,27 @@ impl<R: Real> PlanCache<R> {
 
     /// Takes the available packed meshes; only those of the last picture are kept here.
     fn meshes(&mut self) -> Meshes<R> {
-        let mut meshes = std::mem::take(&mut self.others);
+        let mut meshes = std::mem::take(&mut self.extra_meshes);
         meshes.extend(self.last_meshes());
         meshes
     }
 
     /// Returns whether the last picture was of these objects.
-    fn is_of(&self, objects: &List<Object>) -> bool {
+    fn is_for(&self, objects: &List<Object>) -> bool {
         let mut last = self.last.iter();
         last.any(|(source, _)| source.objects.is_same(objects))
     }
 
     /// The faces of meshes that shadow rays can skip, kept from picture to picture.
-    pub fn culled_faces(&mut self) -> &mut KeptCulledFaces<R> {
+    pub fn culled_faces(&mut self) -> &mut CulledFacesCache<R> {
         &mut self.culled_faces
     }
 
     /// Returns the objects that fill the same surface; the previous result if no object has changed.
     pub fn coincidences(&mut self, objects: &List<Object>, centre: DVec3) -> Arc<[Coincidence]> {
-        if let Some((of, around, found)) = &self.coincidences
-            && of.is_same(objects)
-            && *around == centre
+        if let Some((known_objects, known_centre, found)) = &self.coincidences
+            && known_objects.is_same(objects)
+            && *known_centre == centre
         {
             return Arc::clone(found);
         }
@@ -180,74 +180,74 @@ impl<R: Real> PlanCache<R> {
     /// Returns the contacts of a scene's lights; the previous result if nothing has changed.
     pub fn light_contacts(&mut self, scene: &Scene) -> Arc<LightContacts> {
         let lights = scene.lights.iter().map(|light| light.position);
-        if let Some((objects, places, found)) = &self.light_contacts
+        if let Some((objects, positions, found)) = &self.light_contacts
             && objects.is_same(&scene.objects)
-            && lights.clone().eq(places.iter().copied())
+            && lights.clone().eq(positions.iter().copied())
         {
             return Arc::clone(found);
         }
-        let places: Vec<DVec3> = lights.collect();
-        let found = Arc::new(LightContacts::new(&scene.objects, &places));
-        self.light_contacts = Some((scene.objects.clone(), places, Arc::clone(&found)));
+        let positions: Vec<DVec3> = lights.collect();
+        let found = Arc::new(LightContacts::new(&scene.objects, &positions));
+        self.light_contacts = Some((scene.objects.clone(), positions, Arc::clone(&found)));
         found
     }
 
-    /// Returns the geometry of a scene relative to `centre`, without the objects `apart`, for this sampling; the
+    /// Returns the geometry of a scene relative to `centre`, without the objects `excluded`, for this sampling; the
     /// previous one if nothing of it has changed.
     pub fn geometry(
         &mut self,
         scene: &Scene,
-        (centre, apart): (DVec3, &BTreeSet<usize>),
+        (centre, excluded): (DVec3, &BTreeSet<usize>),
         sampling: Sampling,
     ) -> Arc<Geometry<R>> {
         // Adaptive sampling treats the content of small boxes as one thing, so the picture depends on the tree: it
         // then must be the same as without earlier pictures.
         let may_refit = !matches!(sampling, Sampling::Adaptive { .. });
         if let Some((source, geometry)) = &self.last
-            && source.is_of(scene, centre, apart)
+            && source.is_for(scene, centre, excluded)
             && (may_refit || !geometry.is_refitted)
         {
             return Arc::clone(geometry);
         }
         let meshes = self.meshes();
         let last = self.last.take().map(|(_, last)| last);
-        let before = last.as_deref().filter(|_| may_refit);
-        let before = before.map(|last| (last.counts(), &last.bvh));
-        let geometry = Geometry::new(scene, (centre, apart), meshes, before);
+        let previous = last.as_deref().filter(|_| may_refit);
+        let previous = previous.map(|last| (last.counts(), &last.bvh));
+        let geometry = Geometry::new(scene, (centre, excluded), meshes, previous);
         let geometry = Arc::new(geometry);
-        self.last = Some((Source::of(scene, centre, apart), Arc::clone(&geometry)));
+        self.last = Some((Source::of(scene, centre, excluded), Arc::clone(&geometry)));
         geometry
     }
 }
 
 /// Returns whether the bounded objects of a scene are kept in a tree: many of them, fewer if they fill a space or
 /// share few pixels, and any mesh.
-pub fn is_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
+pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool {
     let visible = || scene.visible_objects();
-    let is_wanted = match request.accelerator {
+    let is_preferred = match request.accelerator {
         Accelerator::List => false,
         Accelerator::Bvh => true,
         Accelerator::Auto => {
             let is_triangle = |object: &&Object| matches!(object.shape, Shape::Triangle(_));
             let triangles = visible().filter(is_triangle);
-            let ended = visible().filter_map(|object| object.shape.bounds());
-            let ended: Vec<_> = ended.take(LARGEST_LIST + 1).collect();
+            let bounded = visible().filter_map(|object| object.shape.bounds());
+            let bounded: Vec<_> = bounded.take(LARGEST_LIST + 1).collect();
             let pixels_each = match request.sampling {
-                Sampling::Adaptive { .. } => PIXELS_IN_SMOOTH_TREES,
-                Sampling::Centres | Sampling::Grid(_) => PIXELS_IN_TREES,
+                Sampling::Adaptive { .. } => ADAPTIVE_PIXELS_PER_OBJECT,
+                Sampling::Centres | Sampling::Grid(_) => PIXELS_PER_OBJECT,
             };
-            let are_small = request.pixels() < ended.len() as u64 * pixels_each;
-            ended.len() > LARGEST_LIST
+            let are_small = request.pixels() < bounded.len() as u64 * pixels_each;
+            bounded.len() > LARGEST_LIST
                 || triangles.take(MOST_LISTED_TRIANGLES + 1).count() > MOST_LISTED_TRIANGLES
-                || (ended.len() > SMALLEST_TREE && (are_small || is_space(&ended)))
+                || (bounded.len() > SMALLEST_TREE && (are_small || fills_space(&bounded)))
         }
     };
     let is_mesh = |object: &Object| matches!(object.shape, Shape::Mesh(_));
-    (is_wanted && may_cull) || visible().any(is_mesh)
+    (is_preferred && may_cull) || visible().any(is_mesh)
 }
 
 /// Returns whether things with these bounds fill a space rather than a shallow field.
-fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
+fn fills_space(bounds: &[(DVec3, DVec3)]) -> bool {
     let low = bounds
         .iter()
         .fold(DVec3::INFINITY, |low, one| low.min(one.0));
@@ -260,7 +260,7 @@ fn is_space(bounds: &[(DVec3, DVec3)]) -> bool {
         x.min(y).max(x.max(y).min(z))
     });
     let mean = sizes.sum::<f64>() / bounds.len() as f64;
-    (high - low).min_element() > DEEPEST_FIELD * mean
+    (high - low).min_element() > MIN_DEPTH_IN_SIZES * mean
 }
 
 impl<R: Real> Geometry<R> {
@@ -268,12 +268,12 @@ impl<R: Real> Geometry<R> {
     /// and refits the tree of the last picture if that had the same number of members of each kind.
     fn new(
         scene: &Scene,
-        (centre, apart): (DVec3, &BTreeSet<usize>),
-        mut ready: Meshes<R>,
-        before: Option<(Counts, &Bvh<R>)>,
+        (centre, excluded): (DVec3, &BTreeSet<usize>),
+        mut known: Meshes<R>,
+        previous: Option<(Counts, &Bvh<R>)>,
     ) -> Self {
         let (mut primitives, mut meshes) = (Primitives::default(), Vec::new());
-        let mut places: [Vec<usize>; KINDS] = Default::default();
+        let mut indices: [Vec<usize>; KINDS] = Default::default();
         let packing = Packing {
             centre,
             corner_users: &count_corner_users(scene),
@@ -281,13 +281,13 @@ impl<R: Real> Geometry<R> {
             projector: None,
         };
         for (index, object) in scene.objects.iter().enumerate() {
-            if !belongs_in_tree(object) || apart.contains(&index) {
+            if !belongs_in_tree(object) || excluded.contains(&index) {
                 continue;
             }
             let material = material_number(scene, &object.color_pack);
             match &object.shape {
                 Shape::Mesh(mesh) => {
-                    let packed = ready.ready(mesh);
+                    let packed = known.get_or_pack(mesh);
                     if packed.triangles.is_empty() {
                         continue; // None of them has an area.
                     }
@@ -295,13 +295,13 @@ impl<R: Real> Geometry<R> {
                         centre: Vec3::from_dvec3(packed.middle_of(mesh) - centre),
                         mesh: packed,
                         material,
-                        place: index,
+                        object_index: index,
                         first: 0,
                     });
                 }
                 shape => {
                     if let Some(packed) = primitives.push(shape, material, &packing) {
-                        places[packed.kind as usize].push(index);
+                        indices[packed.kind as usize].push(index);
                     }
                 }
             }
@@ -312,21 +312,21 @@ impl<R: Real> Geometry<R> {
             first += instance.mesh.triangles.len();
         }
         measure_loose(&mut primitives, &BTreeSet::new());
-        let mut members = Members(Vec::with_capacity(primitives.len()));
+        let mut members = MemberCollector(Vec::with_capacity(primitives.len()));
         primitives.visit(&mut members);
         members.0.extend(meshes.iter().map(MeshInstance::member));
         let lifts = meshes.iter().map(|instance| instance.mesh.lift);
         let member = |number: usize| members.0[number];
         // If nothing was added or removed, something has moved, mostly by little.
         let counts = (primitives.counts(), meshes.len());
-        let refitted = before
-            .filter(|(before, _)| *before == counts)
+        let refitted = previous
+            .filter(|(previous, _)| *previous == counts)
             .and_then(|(_, bvh)| bvh.refitted(member));
         Self {
             is_refitted: refitted.is_some(),
             bvh: refitted.unwrap_or_else(|| Bvh::new(members.0.len(), member)),
             lift: lifts.fold(R::ZERO, R::max),
-            places,
+            indices,
             primitives,
             meshes,
         }
@@ -345,7 +345,7 @@ impl<R: Real> Geometry<R> {
                 high: inner.high + instance.centre,
             })
         });
-        let is_fine = self.meshes.len() <= FINE_OUTLINE && self.primitives.is_empty();
+        let is_fine = self.meshes.len() <= MAX_FINE_MESHES && self.primitives.is_empty();
         let coarse = self.bvh.outline().filter(move |_| !is_fine);
         coarse.chain(meshes.filter(move |_| is_fine))
     }
@@ -375,8 +375,8 @@ impl<R: Real> Geometry<R> {
 
     /// The number of the primitive for the object with this index in the scene's list.
     pub fn number_at(&self, index: usize) -> Option<usize> {
-        let mut kinds = self.primitives.firsts().into_iter().zip(&self.places);
-        kinds.find_map(|(first, places)| Some(first + places.binary_search(&index).ok()?))
+        let mut kinds = self.primitives.firsts().into_iter().zip(&self.indices);
+        kinds.find_map(|(first, indices)| Some(first + indices.binary_search(&index).ok()?))
     }
 
     /// The mesh to which a primitive belongs; numbers count from the geometry's first primitive.
@@ -395,18 +395,18 @@ pub fn belongs_in_tree(object: &Object) -> bool {
     object.visible && object.shape.bounds().is_some()
 }
 
-/// Measures the thickness of connected loose triangles, and finds groups of them that count as one thing.
-/// Primitives with numbers in `apart` are measured separately: with a tree, the others are in it.
-pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<usize>) {
+/// Measures the thickness of connected loose triangles, and finds large components of them.
+/// Primitives with numbers in `separate` are measured by themselves: with a tree, the others are in it.
+pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, separate: &BTreeSet<usize>) {
     let first = primitives.firsts()[Kind::Triangle as usize];
-    let places = 0..primitives.triangles.len();
-    let is_apart = |place: &usize| apart.contains(&(first + place));
-    let (apart, others): (Vec<usize>, Vec<usize>) = places.clone().partition(is_apart);
-    let mut found = vec![None; places.len()];
-    for group in [others, apart] {
+    let indices = 0..primitives.triangles.len();
+    let is_separate = |index: &usize| separate.contains(&(first + index));
+    let (separate, others): (Vec<usize>, Vec<usize>) = indices.clone().partition(is_separate);
+    let mut found = vec![None; indices.len()];
+    for group in [others, separate] {
         // Measured in double precision, whichever precision traces them.
-        let own = group.iter().map(|&at| &primitives.triangles[at]);
-        let mut triangles: Vec<_> = own.map(PackedTriangle::in_precision).collect();
+        let own_triangles = group.iter().map(|&index| &primitives.triangles[index]);
+        let mut triangles: Vec<_> = own_triangles.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);
         let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
         let all = &triangles;
@@ -417,16 +417,16 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, apart: &BTreeSet<u
         );
         measure(&mut triangles, &corners, &mut bvh, &borders);
         let parts = borders.of_one_material.unwrap_or(borders.connected);
-        let things = things(&parts);
-        for (index, (&place, mut triangle)) in group.iter().zip(triangles).enumerate() {
-            let thing = things.get(index).copied().flatten();
-            triangle.tip = thing.map_or(Tip::Narrow, |_| triangle.tip);
-            primitives.triangles[place] = triangle.in_precision();
-            found[place] = thing.map(|first| group[first as usize] as u32);
+        let components = large_components(&parts);
+        for (index, (&target, mut triangle)) in group.iter().zip(triangles).enumerate() {
+            let component = components.get(index).copied().flatten();
+            triangle.tip = component.map_or(Tip::Narrow, |_| triangle.tip);
+            primitives.triangles[target] = triangle.in_precision();
+            found[target] = component.map(|first| group[first as usize] as u32);
         }
     }
-    let has_things = found.iter().any(Option::is_some);
-    primitives.things = if has_things { found } else { Vec::new() };
+    let has_components = found.iter().any(Option::is_some);
+    primitives.components = if has_components { found } else { Vec::new() };
 }
 
 /// The index of a color pack among the materials.
@@ -435,9 +435,9 @@ pub fn material_number(scene: &Scene, pack: &str) -> u32 {
 }
 
 /// All bounded primitives, in the order of their numbers.
-struct Members<R>(Vec<Member<R>>);
+struct MemberCollector<R>(Vec<Member<R>>);
 
-impl<R: Real> Visit<R> for Members<R> {
+impl<R: Real> Visit<R> for MemberCollector<R> {
     fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], _first: usize) {
         let members = primitives.iter().filter_map(|primitive| {
             Some(Member {

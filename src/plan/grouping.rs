@@ -12,21 +12,21 @@ use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 /// Maximum number of boxes per node.
 pub const GROUP: usize = 16;
 /// Maximum number of nodes on the path from the root to a member.
-pub const DEEPEST: usize = 24;
+pub const MAX_DEPTH: usize = 24;
 /// Number of boxes above which they are split into parts first. Clustered as a whole, a million boxes would take
 /// 230 MB at once and make a worse tree: clustering joins neighbours without regard to the whole. With parts, a
 /// hilly ground with a finer middle is traced in 0.79 of the time; balls that fill a space gain nothing, and
 /// 100,000 of them take 1.08 times as long.
-const MANY: usize = 1 << 17;
+const PARTITION_THRESHOLD: usize = 1 << 17;
 /// Maximum number of boxes per part.
-const PART: usize = 1 << 14;
+const MAX_PART_SIZE: usize = 1 << 14;
 /// Share of the boxes that are reinserted elsewhere after clustering, if that improves the tree.
 const REINSERTED: f32 = 0.02;
 
 /// Number of boxes that are sampled to find out whether many coincide.
 const SAMPLED: usize = 512;
 /// Maximum distance by which coinciding boxes are moved, as a share of the largest coordinate.
-const LITTLE: f32 = 1e-3;
+const MAX_NUDGE: f32 = 1e-3;
 
 /// The content of one box of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,36 +64,40 @@ impl WideNode {
 
 /// Builds the nodes of a tree over `boxes`; their indices are their numbers. The root comes first, and each node
 /// before its child nodes.
-pub fn grouped(boxes: &[Aabb]) -> Vec<WideNode> {
+pub fn group_boxes(boxes: &[Aabb]) -> Vec<WideNode> {
     if boxes.is_empty() {
         return Vec::new();
     }
     let mut members: Vec<u32> = (0..boxes.len() as u32).collect();
-    let most = if boxes.len() > MANY { PART } else { MANY };
-    groups_of(boxes, &mut members, (most, DEEPEST))
+    let max_size = if boxes.len() > PARTITION_THRESHOLD {
+        MAX_PART_SIZE
+    } else {
+        PARTITION_THRESHOLD
+    };
+    build_nodes(boxes, &mut members, (max_size, MAX_DEPTH))
 }
 
-/// Builds the tree over some of the boxes; splits them into parts first if there are more than `most`.
-fn groups_of(
+/// Builds the tree over some of the boxes; splits them into parts first if there are more than `max_size`.
+fn build_nodes(
     boxes: &[Aabb],
     members: &mut [u32],
-    (most, deepest): (usize, usize),
+    (max_size, max_depth): (usize, usize),
 ) -> Vec<WideNode> {
-    if members.len() > most {
-        let parts = in_parts(boxes, members).into_par_iter();
-        let trees = parts.map(|part| groups_of(boxes, part, (most, deepest - 1)));
+    if members.len() > max_size {
+        let parts = split_into_parts(boxes, members).into_par_iter();
+        let trees = parts.map(|part| build_nodes(boxes, part, (max_size, max_depth - 1)));
         return under_one_root(trees.collect());
     }
-    let own = members.iter().map(|&member| boxes[member as usize]);
-    let mut pairs = build_pairs(own.collect());
+    let own_boxes = members.iter().map(|&member| boxes[member as usize]);
+    let mut pairs = build_pairs(own_boxes.collect());
     for member in &mut pairs.primitive_indices {
         *member = members[*member as usize];
     }
-    widened(&pairs, deepest).unwrap_or_else(|| bundled(&pairs.primitive_indices))
+    widen(&pairs, max_depth).unwrap_or_else(|| group_by_order(&pairs.primitive_indices))
 }
 
 /// Splits the members into [`GROUP`] parts of equal size, by repeated halving across the longest axis.
-fn in_parts<'a>(boxes: &[Aabb], members: &'a mut [u32]) -> Vec<&'a mut [u32]> {
+fn split_into_parts<'a>(boxes: &[Aabb], members: &'a mut [u32]) -> Vec<&'a mut [u32]> {
     let mut parts = vec![members];
     while parts.len() < GROUP {
         let halves = parts.into_iter().flat_map(|part| {
@@ -132,8 +136,8 @@ fn under_one_root(trees: Vec<Vec<WideNode>>) -> Vec<WideNode> {
 /// Clusters boxes into a binary tree: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
 /// Hierarchy Construction", TVCG 24(3), 2018, followed by reinsertion of some boxes.
 fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
-    if are_many_alike(&boxes) {
-        tell_apart(&mut boxes);
+    if are_many_coincident(&boxes) {
+        separate_coincident(&mut boxes);
     }
     let mut pairs = PlocBuilder::with_capacity(boxes.len()).build(
         PlocSearchDistance::Low,
@@ -148,7 +152,7 @@ fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
 }
 
 /// Returns whether many boxes coincide with others, judged by a sample.
-fn are_many_alike(boxes: &[Aabb]) -> bool {
+fn are_many_coincident(boxes: &[Aabb]) -> bool {
     let step = boxes.len().div_ceil(SAMPLED).max(1);
     let bits = |one: &Aabb| {
         (
@@ -163,19 +167,19 @@ fn are_many_alike(boxes: &[Aabb]) -> bool {
 
 /// Moves each box a little in its own direction. Coinciding boxes would be joined one at a time, since all choose
 /// the same nearest neighbour: 40,000 balls took half a minute. The moved boxes only determine the grouping.
-fn tell_apart(boxes: &mut [Aabb]) {
+fn separate_coincident(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
     let size = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
     let mut state = 1_u32;
-    let mut part = || {
+    let mut random = || {
         // A linear congruential generator: Knuth, "The art of computer programming" 2, §3.3.4.
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (state >> 8) as f32 / 16_777_216.0
     };
     for one in boxes {
-        let by = Vec3A::new(part(), part(), part()) * (size * LITTLE);
-        one.min += by;
-        one.max += by;
+        let nudge = Vec3A::new(random(), random(), random()) * (size * MAX_NUDGE);
+        one.min += nudge;
+        one.max += nudge;
     }
 }
 
@@ -198,7 +202,7 @@ impl AllSplits {
 /// a box in proportion to its surface area. Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs
 /// through compressed wide BVHs", HPG 2017, ch. 3; members cost the same wherever they are held.
 fn distribute_places(pairs: &Bvh2) -> AllSplits {
-    let mut shares = vec![[0; GROUP]; pairs.nodes.len().div_ceil(2)];
+    let mut splits = vec![[0; GROUP]; pairs.nodes.len().div_ceil(2)];
     let mut waiting = vec![(0, false)];
     // Total surface area of the wide nodes in a pair, by the number of places it may take up.
     let mut surfaces: Vec<[f32; GROUP]> = Vec::new();
@@ -210,62 +214,62 @@ fn distribute_places(pairs: &Bvh2) -> AllSplits {
         } else if !is_entered {
             waiting.extend([(index, true), (first + 1, false), (first, false)]);
         } else if let (Some(second), Some(first)) = (surfaces.pop(), surfaces.pop()) {
-            let (surface, share) = shared_among(node.aabb().half_area(), &first, &second);
-            shares[node.first_index as usize / 2] = share;
+            let (surface, split) = distribute_pair(node.aabb().half_area(), &first, &second);
+            splits[node.first_index as usize / 2] = split;
             surfaces.push(surface);
         }
     }
-    AllSplits(shares)
+    AllSplits(splits)
 }
 
 /// Returns the total surface areas for a pair with this surface area and these halves, and how it is distributed.
-fn shared_among(
+fn distribute_pair(
     surface: f32,
     first: &[f32; GROUP],
     second: &[f32; GROUP],
 ) -> ([f32; GROUP], Splits) {
-    let (mut surfaces, mut shares) = ([f32::INFINITY; GROUP], [0; GROUP]);
+    let (mut surfaces, mut splits) = ([f32::INFINITY; GROUP], [0; GROUP]);
     for places in 1..GROUP {
         for taken in 0..places {
             let sum = first[taken] + second[places - 1 - taken];
             if sum < surfaces[places] {
                 surfaces[places] = sum;
-                shares[places] = taken as u8 + 1;
+                splits[places] = taken as u8 + 1;
             }
         }
     }
-    let alone = surface + surfaces[GROUP - 1];
-    surfaces[0] = alone;
-    shares[0] = shares[GROUP - 1];
+    let as_one_box = surface + surfaces[GROUP - 1];
+    surfaces[0] = as_one_box;
+    splits[0] = splits[GROUP - 1];
     for places in 1..GROUP {
-        if alone <= surfaces[places] {
-            (surfaces[places], shares[places]) = (alone, 0);
+        if as_one_box <= surfaces[places] {
+            (surfaces[places], splits[places]) = (as_one_box, 0);
         }
     }
-    (surfaces, shares)
+    (surfaces, splits)
 }
 
 /// Turns pairs into wide nodes, from the root down; `None` if the tree becomes too deep.
-fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<WideNode>> {
-    let shares = distribute_places(pairs);
+fn widen(pairs: &Bvh2, max_depth: usize) -> Option<Vec<WideNode>> {
+    let splits = distribute_places(pairs);
     // The pair and the depth of each wide node; they are listed first, so that no more memory is allocated than
     // needed.
     let mut tops = vec![(0, 1)];
-    let mut at = 0;
-    while let Some(&(pair, depth)) = tops.get(at) {
-        if depth > deepest {
+    let mut next_top = 0;
+    while let Some(&(pair, depth)) = tops.get(next_top) {
+        if depth > max_depth {
             return None;
         }
-        let inner = node_boxes(pairs, &shares, pair).into_iter();
+        let inner = node_boxes(pairs, &splits, pair).into_iter();
         let inner = inner.filter(|&pair| !pairs.nodes[pair].is_leaf());
         tops.extend(inner.map(|pair| (pair, depth + 1)));
-        at += 1;
+        next_top += 1;
     }
     let mut groups = Vec::with_capacity(tops.len());
     let mut next = 0;
     for (pair, _) in tops {
         let mut group = WideNode::default();
-        for pair in node_boxes(pairs, &shares, pair) {
+        for pair in node_boxes(pairs, &splits, pair) {
             let half = &pairs.nodes[pair];
             group.push(if half.is_leaf() {
                 Child::Member(pairs.primitive_indices[half.first_index as usize])
@@ -280,35 +284,35 @@ fn widened(pairs: &Bvh2, deepest: usize) -> Option<Vec<WideNode>> {
 }
 
 /// The pairs that become the boxes of the wide node of `pair`.
-fn node_boxes(pairs: &Bvh2, shares: &AllSplits, pair: usize) -> Vec<usize> {
+fn node_boxes(pairs: &Bvh2, splits: &AllSplits, pair: usize) -> Vec<usize> {
     let mut boxes = Vec::with_capacity(GROUP);
-    let halves = |pair: usize, places: usize, share: u8| {
-        let (first, taken) = (pairs.nodes[pair].first_index as usize, usize::from(share));
+    let split_pair = |pair: usize, places: usize, split: u8| {
+        let (first, taken) = (pairs.nodes[pair].first_index as usize, usize::from(split));
         [(first + 1, places - taken), (first, taken)]
     };
     if pairs.nodes[pair].is_leaf() {
         return vec![pair];
     }
-    let share = shares.of(pairs, pair)[0];
-    let mut waiting = Vec::from(halves(pair, GROUP, share));
+    let split = splits.of(pairs, pair)[0];
+    let mut waiting = Vec::from(split_pair(pair, GROUP, split));
     while let Some((pair, places)) = waiting.pop() {
         let is_leaf = pairs.nodes[pair].is_leaf();
-        let share = if places == 1 || is_leaf {
+        let split = if places == 1 || is_leaf {
             0
         } else {
-            shares.of(pairs, pair)[places - 1]
+            splits.of(pairs, pair)[places - 1]
         };
-        if share == 0 {
+        if split == 0 {
             boxes.push(pair);
         } else {
-            waiting.extend(halves(pair, places, share));
+            waiting.extend(split_pair(pair, places, split));
         }
     }
     boxes
 }
 
 /// Groups neighbours in a list into nodes: only as good as the order of the list, but never deep.
-fn bundled(order: &[u32]) -> Vec<WideNode> {
+fn group_by_order(order: &[u32]) -> Vec<WideNode> {
     let mut groups = vec![WideNode::default()];
     let mut waiting = VecDeque::from([(0, order)]);
     while let Some((index, members)) = waiting.pop_front() {
@@ -332,11 +336,11 @@ mod tests {
 
     /// How often each member is held, and the depth of the deepest node.
     fn found(groups: &[WideNode], length: usize) -> (Vec<u32>, usize) {
-        let (mut found, mut deepest) = (vec![0; length], 0);
+        let (mut found, mut max_depth) = (vec![0; length], 0);
         let mut waiting = vec![(0, 1)];
         while let Some((index, depth)) = waiting.pop() {
             let group: &WideNode = &groups[index as usize];
-            deepest = deepest.max(depth);
+            max_depth = max_depth.max(depth);
             for child in &group.children[..group.count] {
                 match *child {
                     Child::Node(node) => waiting.push((node, depth + 1)),
@@ -344,39 +348,41 @@ mod tests {
                 }
             }
         }
-        (found, deepest)
+        (found, max_depth)
     }
 
     #[test]
     fn boxes_in_one_place_go_together_two_by_two_and_not_one_by_one() {
         let alike = vec![Aabb::new(Vec3A::ZERO, Vec3A::ONE); 3_000];
-        assert!(are_many_alike(&alike));
-        let groups = widened(&build_pairs(alike), DEEPEST).expect("a tree that is not deep");
-        let (found, deepest) = found(&groups, 3_000);
+        assert!(are_many_coincident(&alike));
+        let groups = widen(&build_pairs(alike), MAX_DEPTH).expect("a tree that is not deep");
+        let (found, max_depth) = found(&groups, 3_000);
         assert!(found.iter().all(|&times| times == 1));
-        assert!(deepest <= 12, "{deepest}");
+        assert!(max_depth <= 12, "{max_depth}");
         let apart = (0..3_000_u16).map(|x| Vec3A::X * f32::from(x));
         let apart: Vec<_> = apart.map(|at| Aabb::new(at, at + Vec3A::ONE)).collect();
-        assert!(!are_many_alike(&apart));
+        assert!(!are_many_coincident(&apart));
     }
 
     #[test]
     fn very_many_boxes_are_parted_first_and_all_of_them_found() {
-        let count = MANY + 1_000;
+        let count = PARTITION_THRESHOLD + 1_000;
         let place = |at: usize| Vec3A::new((at % 371) as f32, (at / 371) as f32, 0.0);
         let boxes: Vec<_> = (0..count).map(place).collect();
         let boxes: Vec<_> = boxes.iter().map(|&at| Aabb::new(at, at + 0.5)).collect();
-        let groups = grouped(&boxes);
-        let (found, deepest) = found(&groups, count);
+        let groups = group_boxes(&boxes);
+        let (found, max_depth) = found(&groups, count);
         assert!(found.iter().all(|&times| times == 1));
-        assert!(deepest <= 9, "{deepest}");
+        assert!(max_depth <= 9, "{max_depth}");
         assert_eq!(groups[0].count, GROUP);
         // Adjacent parts overlap no more than by an edge.
         let mut members: Vec<u32> = (0..count as u32).collect();
-        let around = in_parts(&boxes, &mut members).into_iter().map(|part| {
-            let own = part.iter().map(|&member| boxes[member as usize]);
-            own.fold(Aabb::empty(), |around, one| around.union(&one))
-        });
+        let around = split_into_parts(&boxes, &mut members)
+            .into_iter()
+            .map(|part| {
+                let own = part.iter().map(|&member| boxes[member as usize]);
+                own.fold(Aabb::empty(), |around, one| around.union(&one))
+            });
         let areas: f32 = around.map(|around| around.half_area()).sum();
         let all = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
         assert!(areas < 1.05 * all.half_area(), "{areas}");
@@ -386,9 +392,9 @@ mod tests {
     fn a_list_becomes_a_flat_tree() {
         for length in [1, 2, 15, 16, 17, 255, 256, 257, 2999] {
             let order: Vec<u32> = (0..length).collect();
-            let (found, deepest) = found(&bundled(&order), length as usize);
+            let (found, max_depth) = found(&group_by_order(&order), length as usize);
             assert!(found.iter().all(|&times| times == 1), "{length}");
-            assert!(deepest <= 4, "{length}: {deepest}");
+            assert!(max_depth <= 4, "{length}: {max_depth}");
         }
     }
 }

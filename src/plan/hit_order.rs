@@ -11,20 +11,20 @@ const PIXELS_IN_ORDER: u64 = 128;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitOrder {
     /// In the order of the samples.
-    OfSamples,
+    BySample,
     /// By proximity of the hits: for many objects, of which few pixels see the same one, and for samples along
     /// edges.
-    OfPlaces,
+    ByPosition,
 }
 
 impl HitOrder {
     /// Chooses the order for a picture with this many objects in the tree.
-    pub fn of(things: usize, request: &RenderRequest) -> Self {
+    pub fn of(members: usize, request: &RenderRequest) -> Self {
         let is_smooth = matches!(request.sampling, Sampling::Adaptive { .. });
-        if is_smooth || things as u64 * PIXELS_IN_ORDER > request.pixels() {
-            Self::OfPlaces
+        if is_smooth || members as u64 * PIXELS_IN_ORDER > request.pixels() {
+            Self::ByPosition
         } else {
-            Self::OfSamples
+            Self::BySample
         }
     }
 }

@@ -16,11 +16,11 @@ use crate::scene::{Mesh, PlanePiece, Projection, Scene, Shape, unit};
 use crate::simd::{Real, Vec3};
 
 /// Height above a face, as a share of the coordinates, that single precision may give a point on the face.
-const ON_FACE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
+const MAX_FACE_HEIGHT: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 
-/// A place from which rays start, or to which they go.
+/// A point from which rays start, or to which they go.
 #[derive(Clone, Copy)]
-struct Place {
+struct RayEnd {
     /// In the world.
     point: DVec3,
     /// The direction of parallel rays, which start from a window through the point.
@@ -29,30 +29,32 @@ struct Place {
 
 impl<R: Real> Plan<R> {
     /// Finds the faces that contain the eye or a light.
-    pub fn hold(&mut self, scene: &Scene, request: &RenderRequest) {
+    pub fn find_held_faces(&mut self, scene: &Scene, request: &RenderRequest) {
         let Some(geometry) = &self.geometry else {
             return;
         };
         if request.model == Model::Everything {
             return;
         }
-        let holding = |place: Place| {
+        let containing = |end: RayEnd| {
             let meshes = geometry.meshes.iter();
             meshes
-                .map(|instance| match &scene.objects[instance.place].shape {
-                    Shape::Mesh(mesh) => place.held_by(instance, mesh),
-                    _ => None,
-                })
+                .map(
+                    |instance| match &scene.objects[instance.object_index].shape {
+                        Shape::Mesh(mesh) => end.containing_faces(instance, mesh),
+                        _ => None,
+                    },
+                )
                 .collect()
         };
         let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
-        self.unseen_faces = holding(Place {
+        self.unseen_faces = containing(RayEnd {
             point: scene.camera.position,
             direction: unit(scene.camera.look_at).filter(|_| is_parallel),
         });
         for light in &mut self.lights {
-            light.culled_faces = holding(Place {
-                point: light.place,
+            light.culled_faces = containing(RayEnd {
+                point: light.world_position,
                 direction: None,
             });
             light.may_touch |= light.culled_faces.iter().any(Option::is_some);
@@ -60,19 +62,19 @@ impl<R: Real> Plan<R> {
     }
 }
 
-impl Place {
-    /// The faces of a mesh that contain the place; `None` if there are none.
-    fn held_by<R: Real>(
+impl RayEnd {
+    /// The faces of a mesh that contain the end; `None` if there are none.
+    fn containing_faces<R: Real>(
         &self,
         instance: &MeshInstance<R>,
         mesh: &Mesh,
     ) -> Option<Arc<CulledFaces>> {
         let packed = &*instance.mesh;
-        let near = Near::new(self, packed, mesh);
-        let may_hold = meets_any(
+        let local = LocalRayEnd::new(self, packed, mesh);
+        let may_hold = any_member(
             &packed.bvh,
-            |bounds| near.meets(bounds),
-            |face| near.may_be_held(&packed.triangles[face as usize]),
+            |bounds| local.meets(bounds),
+            |face| local.may_be_held(&packed.triangles[face as usize]),
         );
         if !may_hold {
             return None; // Only now is it worth checking all faces.
@@ -83,9 +85,9 @@ impl Place {
             PlanePiece::between(*corners).is_some_and(|piece| self.is_in(&piece))
         });
         let holding: HashSet<_> = holding
-            .map(|(corners, _)| sorted(corners.map(|corner| packed.place(corner))))
+            .map(|(corners, _)| sorted_corners(corners.map(|corner| packed.to_local(corner))))
             .collect();
-        let is_held = |face: &PackedTriangle<R>| holding.contains(&sorted(face.corners));
+        let is_held = |face: &PackedTriangle<R>| holding.contains(&sorted_corners(face.corners));
         (!holding.is_empty()).then(|| Arc::new(CulledFaces::of(packed, is_held)))
     }
 
@@ -97,22 +99,22 @@ impl Place {
     }
 }
 
-/// The same place relative to the middle of a mesh, with the rounding error of the mesh's faces.
+/// The same point relative to the middle of a mesh, with the rounding error of the mesh's faces.
 #[derive(Clone, Copy)]
-struct Near<R> {
+struct LocalRayEnd<R> {
     point: Vec3<R>,
     direction: Option<Vec3<R>>,
     slack: R,
 }
 
-impl<R: Real> Near<R> {
-    fn new(place: &Place, packed: &PackedMesh<R>, mesh: &Mesh) -> Self {
-        let point = Vec3::from_dvec3(place.point - packed.middle_of(mesh));
+impl<R: Real> LocalRayEnd<R> {
+    fn new(end: &RayEnd, packed: &PackedMesh<R>, mesh: &Mesh) -> Self {
+        let point = Vec3::from_dvec3(end.point - packed.middle_of(mesh));
         let size = point.max_abs() + packed.bvh.bounds.max_abs();
         Self {
             point,
-            direction: place.direction.map(Vec3::from_dvec3),
-            slack: size * R::from_f64(ON_FACE),
+            direction: end.direction.map(Vec3::from_dvec3),
+            slack: size * R::from_f64(MAX_FACE_HEIGHT),
         }
     }
 
@@ -120,12 +122,12 @@ impl<R: Real> Near<R> {
     fn meets(&self, bounds: &BoundingBox<R>) -> bool {
         let (middle, _) = bounds.ball();
         let half = bounds.high - middle + Vec3::splat(self.slack);
-        let away = (self.point - middle).to_array();
+        let offset = (self.point - middle).to_array();
         match self.direction {
-            None => away
+            None => offset
                 .into_iter()
                 .zip(half.to_array())
-                .all(|(away, half)| away.abs() <= half),
+                .all(|(offset, half)| offset.abs() <= half),
             Some(direction) => {
                 let across = direction.to_array().map(R::abs);
                 (self.point - middle).dot(direction).abs() <= half.dot(Vec3::from(across))
@@ -144,20 +146,20 @@ impl<R: Real> Near<R> {
 }
 
 /// The bits of a face's corners, independent of winding and of which corner comes first.
-fn sorted<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
+fn sorted_corners<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
     let bits = |corner: Vec3<R>| corner.to_array().map(|part| part.to_f64().to_bits());
     let mut corners = corners.map(bits);
     corners.sort_unstable();
     corners
 }
 
-/// Returns whether `is_it` holds for any member in the boxes for which `counts` holds.
-fn meets_any<R: Real>(
+/// Returns whether `is_match` holds for any member in the boxes for which `is_relevant` holds.
+fn any_member<R: Real>(
     bvh: &Bvh<R>,
-    counts: impl Fn(&BoundingBox<R>) -> bool,
-    is_it: impl Fn(u32) -> bool,
+    is_relevant: impl Fn(&BoundingBox<R>) -> bool,
+    is_match: impl Fn(u32) -> bool,
 ) -> bool {
-    if !counts(&bvh.bounds) {
+    if !is_relevant(&bvh.bounds) {
         return false; // Most meshes are far away, and there may be many.
     }
     let mut waiting = vec![0];
@@ -165,10 +167,10 @@ fn meets_any<R: Real>(
         .pop()
         .and_then(|index: u32| bvh.nodes.get(index as usize))
     {
-        for place in (0..node.count).filter(|&place| counts(&node.bounds(place))) {
-            match node.child(place) {
+        for index in (0..node.count).filter(|&index| is_relevant(&node.bounds(index))) {
+            match node.child(index) {
                 Child::Node(inner) => waiting.push(inner),
-                Child::Member(member) if is_it(member) => return true,
+                Child::Member(member) if is_match(member) => return true,
                 Child::Member(_) => {}
             }
         }

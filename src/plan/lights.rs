@@ -18,7 +18,7 @@ pub struct PointLight<R> {
     /// Position relative to the scene's middle.
     pub position: Vec3<R>,
     /// Position in the world.
-    pub place: DVec3,
+    pub world_position: DVec3,
     /// > 0.
     pub intensity: R,
     /// For each triangle, whether others cast all of its shadow; empty if no such triangles are known.
@@ -67,14 +67,14 @@ impl<R: Real> HoldingBall<R> {
 
 /// Largest distance of a light, in sizes of the tree, at which it serves as an apex: beyond, its position is
 /// rounded by more than the boxes differ.
-const FARTHEST_APEX: f64 = 16.0;
+const MAX_APEX_DISTANCE: f64 = 16.0;
 
 impl<R: Real> PointLight<R> {
     /// The point where the rays to the light converge, if it is near enough for boxes to be tested against rays
     /// from there.
     #[inline(always)]
     pub fn apex(&self, geometry: &Geometry<R>) -> Option<Vec3<R>> {
-        let farthest = geometry.bvh.bounds.max_abs() * R::from_f64(FARTHEST_APEX);
+        let farthest = geometry.bvh.bounds.max_abs() * R::from_f64(MAX_APEX_DISTANCE);
         (self.position.max_abs() <= farthest).then_some(self.position)
     }
 }
@@ -106,17 +106,17 @@ pub fn pack_lights<R: Real>(
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
             let may_touch = touches(index);
-            let ball = ball(index).map(|place| &scene.objects[place].shape);
-            let in_world = light.position.abs().max_element() * roundings::<f64>();
+            let ball = ball(index).map(|object| &scene.objects[object].shape);
+            let world_rounding = light.position.abs().max_element() * roundings::<f64>();
             PointLight {
                 position,
-                place: light.position,
+                world_position: light.position,
                 intensity: R::from_f64(light.intensity),
                 shadow_culled_faces: Vec::new(),
                 culled_faces: Vec::new(),
                 holders: holders(index),
                 ball: HoldingBall::new(ball, light.position),
-                rounding: position.max_abs() * roundings() + R::from_f64(in_world),
+                rounding: position.max_abs() * roundings() + R::from_f64(world_rounding),
                 may_be_level: may_touch || has_meshes,
                 may_touch,
             }

@@ -197,7 +197,7 @@ fn planes(plan: &Plan<f64>) -> Need {
 fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "markers";
     let drawn = plan.markers;
-    let made = scene
+    let existing = scene
         .lights
         .iter()
         .filter(|light| light.marker.is_some())
@@ -213,8 +213,8 @@ fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
             "light markers are switched on",
             "a test per marker and shadow ray",
         )
-    } else if made > 0 {
-        let what = format!("{} left out", counted(made, "light marker"));
+    } else if existing > 0 {
+        let what = format!("{} left out", counted(existing, "light marker"));
         need(
             rule,
             what,
@@ -252,12 +252,12 @@ fn faces(plan: &Plan<f64>) -> Need {
         let why = "there are none outside meshes, whose trees skip their far sides";
         return need(rule, "no single triangles", why, "nothing");
     }
-    let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
-    let unseen = set(&plan.camera_culled_faces);
+    let count_set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
+    let unseen = count_set(&plan.camera_culled_faces);
     let idle: usize = plan
         .lights
         .iter()
-        .map(|light| set(&light.shadow_culled_faces))
+        .map(|light| count_set(&light.shadow_culled_faces))
         .sum();
     if unseen + idle == 0 {
         let why = if plan.methods.is_tight() {
@@ -347,10 +347,10 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
     let rule = "highlights";
     // Highlights of unused color packs are never computed.
     let visible = scene.visible_objects();
-    let worn: HashSet<&str> = visible.map(|object| &*object.color_pack).collect();
+    let used_packs: HashSet<&str> = visible.map(|object| &*object.color_pack).collect();
     let packs = plan.materials.iter().zip(scene.color_packs.keys());
     let surfaces = packs
-        .filter(|(_, name)| worn.contains(name.as_str()))
+        .filter(|(_, name)| used_packs.contains(name.as_str()))
         .filter_map(|(Material { surface, .. }, _)| surface.as_ref());
     let exponents: Vec<Exponent> = surfaces.filter_map(|surface| surface.exponent).collect();
     if exponents.is_empty() {

@@ -10,7 +10,7 @@ use super::contacts::{Contacts, Tie};
 use super::culled_faces::CulledFaces;
 use super::flats::Flats;
 use super::geometry::{
-    Geometry, PlanCache, belongs_in_tree, is_tree, material_number, measure_loose,
+    Geometry, PlanCache, belongs_in_tree, material_number, measure_loose, uses_tree,
 };
 use super::hit_order::HitOrder;
 use super::lights::{PointLight, pack_lights};
@@ -77,7 +77,7 @@ pub struct Plan<R> {
     /// Balls around the bounded primitives of `primitives`.
     pub balls: Balls<R>,
     /// The primitive number of each of these balls.
-    pub in_balls: Vec<u32>,
+    pub ball_numbers: Vec<u32>,
     /// For each triangle, whether it can be skipped for camera rays; empty if none can.
     pub camera_culled_faces: Vec<bool>,
     /// Numbers of primitives whose planes contain the eye, or the whole window from which parallel rays start.
@@ -93,7 +93,7 @@ pub struct Plan<R> {
     /// anything in the same surface. Anything hit within that distance of a hit counts as being in its surface.
     pub clearance: R,
     /// The number of visible objects.
-    pub things: usize,
+    pub visible_objects: usize,
     /// The extents of the largest flat primitives.
     pub flats: Flats<R>,
     /// The largest coordinate of the bounded objects.
@@ -114,7 +114,7 @@ const SMOOTH_MARGIN: f64 = 4.0;
 
 impl<R: Real> Plan<R> {
     /// Plans `request` of `scene`, packing only what can be seen. The scene must pass [`crate::scene::check`].
-    pub fn new(scene: &Scene, request: &RenderRequest, kept: &mut PlanCache<R>) -> Self {
+    pub fn new(scene: &Scene, request: &RenderRequest, cache: &mut PlanCache<R>) -> Self {
         let frame = CoordinateFrame::of(scene).unwrap_or(CoordinateFrame {
             centre: scene.camera.position,
             farthest: 0.0,
@@ -134,7 +134,7 @@ impl<R: Real> Plan<R> {
             primitives: Primitives::default(),
             markers: 0,
             geometry: None,
-            hit_order: HitOrder::OfSamples,
+            hit_order: HitOrder::BySample,
             is_boxed: may_cull && request.accelerator != Accelerator::List,
             outline: Vec::new(),
             lights: Vec::new(),
@@ -148,35 +148,36 @@ impl<R: Real> Plan<R> {
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
             balls: Balls::default(),
-            in_balls: Vec::new(),
+            ball_numbers: Vec::new(),
             camera_culled_faces: Vec::new(),
             edge_on: Vec::new(),
             unseen_faces: Vec::new(),
             eye_on: None,
             ties: Vec::new(),
             clearance: R::ZERO,
-            things: scene.visible_objects().count(),
+            visible_objects: scene.visible_objects().count(),
             flats: Flats::NONE,
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
             farthest_middle: R::ZERO,
         };
-        let found = kept.coincidences(&scene.objects, centre);
-        let contacts = Contacts::new(scene, request, (&found, kept.light_contacts(scene)));
+        let coincidences = cache.coincidences(&scene.objects, centre);
+        let contacts = Contacts::new(scene, request, (&coincidences, cache.light_contacts(scene)));
         let projector = projector(scene, request).filter(|_| may_cull);
         let projector = projector.as_ref();
-        if is_tree(scene, request, may_cull) {
-            let geometry = kept.geometry(scene, (centre, contacts.apart()), request.sampling);
+        if uses_tree(scene, request, may_cull) {
+            let geometry =
+                cache.geometry(scene, (centre, contacts.outside_tree()), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
             plan.take_geometry(geometry, projector, centre);
         }
         let numbers = plan.pack(scene, &contacts, projector);
-        let is_apart = |index: &usize| contacts.apart().contains(index);
-        let number = |index: &usize| numbers.get(index).copied().filter(|_| is_apart(index));
+        let is_outside = |index: &usize| contacts.outside_tree().contains(index);
+        let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_on = contacts.eye_on.as_ref().and_then(number);
-        plan.tie(scene, (request, &contacts), &numbers);
+        plan.find_ties(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {
             let ball = contacts.lights.on_balls.get(light).copied().flatten();
@@ -188,23 +189,23 @@ impl<R: Real> Plan<R> {
             flat.chain(&ball(light)).filter_map(number).collect()
         };
         let touches = |light: usize| contacts.lights.touching.contains(&light);
-        let holding = (touches, holders, ball);
-        plan.lights = pack_lights(scene, centre, (occluders, model), holding);
-        plan.hold(scene, request);
+        let light_contacts = (touches, holders, ball);
+        plan.lights = pack_lights(scene, centre, (occluders, model), light_contacts);
+        plan.find_held_faces(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
-            let apart = contacts.apart().iter().filter_map(number).collect();
-            measure_loose(&mut plan.primitives, &apart);
+            let outside_tree = contacts.outside_tree().iter().filter_map(number).collect();
+            measure_loose(&mut plan.primitives, &outside_tree);
             plan.flats = Flats::of(&plan.primitives, plan.geometry.as_deref());
         }
         if may_cull {
-            plan.bound();
+            plan.pack_balls();
             // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
-                plan.drop_lit_faces(scene, request, kept.culled_faces());
+                plan.drop_lit_faces(scene, request, cache.culled_faces());
             }
         }
-        kept.culled_faces().end();
+        cache.culled_faces().end_picture();
         plan
     }
 
@@ -215,12 +216,12 @@ impl<R: Real> Plan<R> {
         projector: Option<&Projector>,
         centre: DVec3,
     ) {
-        let place = |bounds: BoundingBox<R>| {
+        let rectangle = |bounds: BoundingBox<R>| {
             let (middle, radius) = bounds.ball();
             let radius = radius.to_f64() * (1.0 + CAUTION);
             Some(projector?.ball(middle.to_dvec3() + centre, radius))
         };
-        self.outline = geometry.outline().filter_map(place).collect();
+        self.outline = geometry.outline().filter_map(rectangle).collect();
         self.geometry = Some(geometry);
     }
 
@@ -233,7 +234,7 @@ impl<R: Real> Plan<R> {
         projector: Option<&Projector>,
     ) -> HashMap<usize, usize> {
         // With a tree, the only listed triangles are those that touch something.
-        let has_triangles = self.geometry.is_none() || !contacts.apart().is_empty();
+        let has_triangles = self.geometry.is_none() || !contacts.outside_tree().is_empty();
         let (corner_users, faces_of_solids) = if has_triangles {
             (count_corner_users(scene), faces_of_solids(scene))
         } else {
@@ -248,23 +249,23 @@ impl<R: Real> Plan<R> {
         if scene.light_visualization {
             self.pack_markers(scene, &packing);
         }
-        let apart = contacts.apart();
+        let outside_tree = contacts.outside_tree();
         let is_listed = |index: usize, object: &Object| {
             let belongs_in_tree = self.geometry.is_some() && belongs_in_tree(object);
-            object.visible && (!belongs_in_tree || apart.contains(&index))
+            object.visible && (!belongs_in_tree || outside_tree.contains(&index))
         };
         let objects = scene.objects.iter().enumerate();
         let listed: Vec<_> = objects
             .filter(|(index, object)| is_listed(*index, object))
             .collect();
-        let mut found = Vec::new();
+        let mut numbered = Vec::new();
         for (index, object) in listed {
             if contacts.covered.contains(&index) {
                 continue;
             }
             let material = material_number(scene, &object.color_pack);
             let packed = self.push(&object.shape, material, &packing);
-            found.extend(
+            numbered.extend(
                 packed
                     .filter(|_| contacts.needs_number(index))
                     .map(|packed| (index, packed)),
@@ -272,7 +273,7 @@ impl<R: Real> Plan<R> {
         }
         let firsts = self.primitives.firsts();
         let number = |packed: &Packed| firsts[packed.kind as usize] + packed.index;
-        found
+        numbered
             .iter()
             .map(|(index, packed)| (*index, number(packed)))
             .collect()
@@ -302,10 +303,10 @@ impl<R: Real> Plan<R> {
         Some(packed)
     }
 
-    fn bound(&mut self) {
+    fn pack_balls(&mut self) {
         let balls = balls_of(&self.primitives);
         self.balls = Balls::new(balls.iter().map(|(_, ball)| ball));
-        self.in_balls = balls.iter().map(|&(number, _)| number).collect();
+        self.ball_numbers = balls.iter().map(|&(number, _)| number).collect();
     }
 
     /// The geometry, with the number of its first primitive.

@@ -12,7 +12,7 @@ use rayon::iter::{
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
-use super::components::{first_of_parts, volume};
+use super::components::{first_of_components, volume};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::measures;
 use crate::mesh::Triangles;
@@ -42,14 +42,14 @@ pub struct PackedMesh<R> {
     /// that they have without rotation.
     faces: Arc<[[u32; 3]]>,
     /// For each triangle, the first one of its connected component; empty if there is only one component.
-    things: Arc<[u32]>,
+    component_firsts: Arc<[u32]>,
     /// Whether the mesh has an inside; its normals then point outwards, however the file winds its faces.
     is_solid: bool,
     /// Whether the file winds the faces inside out.
     is_inside_out: bool,
     /// The middle of the bounding box relative to the mesh's origin.
     middle: DVec3,
-    turn: DMat3,
+    linear: DMat3,
     /// What the mesh was packed from.
     pub key: MeshKey,
     /// Kept alive so that nothing else gets its address.
@@ -88,8 +88,12 @@ struct Points {
 }
 
 impl Points {
-    fn of(source: &Triangles, turn: DMat3) -> Self {
-        let mut points: Vec<DVec3> = source.points().iter().map(|&point| turn * point).collect();
+    fn of(source: &Triangles, linear: DMat3) -> Self {
+        let mut points: Vec<DVec3> = source
+            .points()
+            .iter()
+            .map(|&point| linear * point)
+            .collect();
         let named = source.faces().as_flattened().iter();
         let corners = named.map(|&corner| points[corner as usize]);
         let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -114,7 +118,7 @@ pub struct MeshInstance<R> {
     /// Index of its material.
     pub material: u32,
     /// Its index in the scene's list.
-    pub place: usize,
+    pub object_index: usize,
     /// The number of its first triangle, counted from that of the geometry's first primitive.
     pub first: usize,
 }
@@ -139,9 +143,9 @@ impl PackedMesh<f64> {
     }
 
     fn of(mesh: &Mesh) -> Self {
-        let turn = mesh.turn();
-        let Points { points, middle } = Points::of(mesh.source.triangles(), turn);
-        let is_mirrored = turn.determinant() < 0.0;
+        let linear = mesh.linear_transform();
+        let Points { points, middle } = Points::of(mesh.source.triangles(), linear);
+        let is_mirrored = linear.determinant() < 0.0;
         // Clockwise seen from outside, as in the source.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let corners = |face: [u32; 3]| face.map(|point| points[point as usize]);
@@ -162,14 +166,14 @@ impl PackedMesh<f64> {
         triangles.extend(faces.iter().filter_map(packed));
         drop(points);
         measure(&mut triangles, &faces, &mut bvh, &borders);
-        let things = first_of_parts(&borders.connected).into();
+        let component_firsts = first_of_components(&borders.connected).into();
         let volume = if borders.is_closed {
             volume(&triangles)
         } else {
             0.0
         };
         if volume < 0.0 {
-            triangles.iter_mut().for_each(PackedTriangle::turn);
+            triangles.iter_mut().for_each(PackedTriangle::flip);
         }
         let smooth = normals_of(mesh, &triangles);
         Self {
@@ -179,13 +183,13 @@ impl PackedMesh<f64> {
             reach: reach(&triangles, bvh.bounds.ball().0),
             smooth,
             faces: faces.into(),
-            things,
+            component_firsts,
             bvh,
             is_solid: volume != 0.0,
             is_inside_out: volume < 0.0,
             triangles,
             middle,
-            turn,
+            linear,
             key: MeshKey::of(mesh),
             source: Arc::clone(mesh.source.triangles()),
         }
@@ -194,8 +198,8 @@ impl PackedMesh<f64> {
     /// Returns the mesh in another precision, or itself if it has that one: its properties stay, and its tree is
     /// shared.
     pub fn in_precision<R: Real>(this: &Arc<Self>) -> Arc<PackedMesh<R>> {
-        let own: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
-        own.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
+        let same: Arc<dyn Any + Send + Sync> = Arc::clone(this) as _;
+        same.downcast().unwrap_or_else(|_| Arc::new(this.rounded()))
     }
 
     fn rounded<R: Real>(&self) -> PackedMesh<R> {
@@ -213,17 +217,17 @@ impl<R: Real> PackedMesh<R> {
     /// Returns `None` if the original order of its faces is not known, or if rounding leaves a face without an
     /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
-        let turn = mesh.turn();
-        let Points { points, middle } = Points::of(&self.source, turn);
+        let linear = mesh.linear_transform();
+        let Points { points, middle } = Points::of(&self.source, linear);
         let faces = self.faces.par_iter().zip(&self.triangles);
-        let triangles = faces.map(|(face, own)| {
+        let triangles = faces.map(|(face, before)| {
             let corners = face.map(|point| points[point as usize]);
             let mut triangle = PackedTriangle::of_mesh(corners)?;
             if self.is_inside_out {
-                triangle.turn();
+                triangle.flip();
             }
-            triangle.thickness = own.thickness.to_f64();
-            triangle.tip = own.tip;
+            triangle.thickness = before.thickness.to_f64();
+            triangle.tip = before.tip;
             Some(triangle)
         });
         let triangles: Vec<PackedTriangle<f64>> = triangles.collect::<Option<_>>()?;
@@ -235,7 +239,7 @@ impl<R: Real> PackedMesh<R> {
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
-            turn,
+            linear,
             key: MeshKey::of(mesh),
             ..self.with((triangles, smooth), bvh)
         })
@@ -256,25 +260,27 @@ impl<R: Real> PackedMesh<R> {
             smooth,
             bvh,
             faces: Arc::clone(&self.faces),
-            things: Arc::clone(&self.things),
+            component_firsts: Arc::clone(&self.component_firsts),
             is_solid: self.is_solid,
             is_inside_out: self.is_inside_out,
             middle: self.middle,
-            turn: self.turn,
+            linear: self.linear,
             key: self.key,
             source: Arc::clone(&self.source),
         }
     }
 
     /// The first face of the connected component of `face`.
-    pub fn thing_of(&self, face: usize) -> usize {
-        self.things.get(face).map_or(0, |&first| first as usize)
+    pub fn component_of(&self, face: usize) -> usize {
+        self.component_firsts
+            .get(face)
+            .map_or(0, |&first| first as usize)
     }
 
     /// The position of a point of the source relative to the middle, with exactly the rounding of the triangles'
     /// corners.
-    pub fn place(&self, point: DVec3) -> Vec3<R> {
-        Vec3::from_dvec3(self.turn * point - self.middle)
+    pub fn to_local(&self, point: DVec3) -> Vec3<R> {
+        Vec3::from_dvec3(self.linear * point - self.middle)
     }
 
     /// The position of the mesh's middle in the world, given the mesh that it was packed from.

@@ -1,6 +1,6 @@
 //! The real type that a scene needs: single precision wherever its errors stay invisible.
 
-use super::closeness::{has_layers, has_twins, is_at_border, is_just_above, is_low};
+use super::closeness::{has_layers, has_twins, is_almost_on, is_at_border, is_just_above};
 use super::request::{Model, RenderRequest};
 use crate::scene::{Object, Precision, Projection, Scene, Shape, unit};
 
@@ -18,7 +18,7 @@ const MIN_EXTENT: f64 = 1e-12;
 
 /// Cosine between the camera's direction and a plane's normal above which the camera looks at the plane, not along
 /// it.
-const FACING: f64 = 0.1;
+const MIN_FACING_COSINE: f64 = 0.1;
 /// Largest ratio of the distance of visible things to the height of the picture for parallel rays in single
 /// precision: an error of 1/16 of a pixel in a picture that is a thousand pixels high.
 const MAX_DISTANCE_PER_HEIGHT: f64 = 1e3;
@@ -140,7 +140,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     };
     let visible = scene.visible_objects();
     visible.map(|object| &object.shape).any(|shape| {
-        is_low(shape, eye)
+        is_almost_on(shape, eye)
             || match shape.feature() {
                 None => false,
                 Some((at, size)) => {
@@ -163,7 +163,7 @@ fn farthest_wall(scene: &Scene) -> f64 {
         shape @ Shape::Plane(_) => shape.plane_piece(),
         _ => None,
     });
-    let facing = planes.filter(|piece| direction.dot(piece.normal).abs() > FACING);
+    let facing = planes.filter(|piece| direction.dot(piece.normal).abs() > MIN_FACING_COSINE);
     let distances = facing.map(|piece| -piece.height(eye) / direction.dot(piece.normal));
     distances.fold(0.0, f64::max)
 }

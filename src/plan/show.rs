@@ -24,11 +24,11 @@ pub enum Show<R> {
     /// The number of rays per pixel, averaged over each tile.
     Cost,
     /// The picture darkened, with the samples that are traced again in white.
-    Again,
+    Retraced,
 }
 
 /// Depth range of a scene without bounded objects, in distances from the eye to the origin.
-const DEEP: f64 = 4.0;
+const DEFAULT_DEPTH: f64 = 4.0;
 
 impl<R: Real> Show<R> {
     /// Returns what the kernels write for an aspect of a scene.
@@ -36,7 +36,7 @@ impl<R: Real> Show<R> {
         match aspect {
             Aspect::Normals => Self::Normals,
             Aspect::Depth => {
-                let (nearest, farthest) = range(scene, projection);
+                let (nearest, farthest) = depth_range(scene, projection);
                 Self::Depth {
                     nearest: R::from_f64(nearest),
                     per_length: R::from_f64(1.0 / (farthest - nearest)),
@@ -48,7 +48,7 @@ impl<R: Real> Show<R> {
             }
             Aspect::Mirrors => Self::Mirrors,
             Aspect::Cost => Self::Cost,
-            Aspect::Again => Self::Again,
+            Aspect::Retraced => Self::Retraced,
             Aspect::All
             | Aspect::Ambient
             | Aspect::Diffuse
@@ -61,10 +61,10 @@ impl<R: Real> Show<R> {
 }
 
 /// The least and greatest distance of the scene from the camera, by the ball around its bounded objects.
-fn range(scene: &Scene, projection: Projection) -> (f64, f64) {
+fn depth_range(scene: &Scene, projection: Projection) -> (f64, f64) {
     let Camera { position, .. } = scene.camera;
     let Some((low, high)) = scene.objects_bounds() else {
-        return (0.0, (position.length() * DEEP).max(1.0));
+        return (0.0, (position.length() * DEFAULT_DEPTH).max(1.0));
     };
     let (middle, radius) = (low.midpoint(high), low.distance(high) / 2.0);
     let distance = match projection {

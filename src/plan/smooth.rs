@@ -10,7 +10,7 @@ use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
 use crate::simd::{Real, Vec3};
 
 /// Number of faces at a corner above which they stay flat there, since each is compared with all others.
-const MOST_AROUND: usize = 1024;
+const MOST_FACES_AT_CORNER: usize = 1024;
 
 /// Margin by which the cosine between two faces must exceed that of the limiting angle for them to be smooth:
 /// several roundings of single precision, in which files store corners, so that faces that meet at exactly that
@@ -25,22 +25,22 @@ const COSINE_MARGIN: f64 = 4e-6;
 pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<CornerNormals<f64>> {
     let least_cosine = degrees.to_radians().cos() + COSINE_MARGIN;
     let numbers = number_corners(triangles);
-    let around = Around::of(&numbers);
-    let turned = turned_faces(&numbers, &around);
-    let is_turned = |face: usize| turned.get(face) == Some(&true);
+    let corner_faces = CornerFaces::of(&numbers);
+    let flipped = flipped_faces(&numbers, &corner_faces);
+    let is_flipped = |face: usize| flipped.get(face) == Some(&true);
     let normal = |face: usize| {
         let normal = triangles[face].normal.to_dvec3();
-        if is_turned(face) { -normal } else { normal }
+        if is_flipped(face) { -normal } else { normal }
     };
     let faces = triangles.par_iter().zip(&numbers).enumerate();
     let normals = faces.map(|(index, (triangle, numbers))| {
         let own = normal(index);
         let normals = numbers.map(|number| {
-            let meeting = around.of_corner(number);
-            if meeting.len() > MOST_AROUND {
+            let faces_here = corner_faces.of_corner(number);
+            if faces_here.len() > MOST_FACES_AT_CORNER {
                 return triangle.normal;
             }
-            let alike = meeting.iter().filter(|&&(face, _)| {
+            let alike = faces_here.iter().filter(|&&(face, _)| {
                 face as usize == index || least_cosine < own.dot(normal(face as usize))
             });
             let sum = alike
@@ -52,7 +52,7 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
                 .sum::<DVec3>();
             let mean = Vec3::from_dvec3(sum.try_normalize().unwrap_or(own));
             // Back on the side of the face's own normal.
-            if is_turned(index) { -mean } else { mean }
+            if is_flipped(index) { -mean } else { mean }
         });
         CornerNormals {
             normals,
@@ -64,52 +64,55 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
 
 /// Returns the faces that must be flipped so that neighbours traverse their common edge in opposite directions and
 /// have their normals on the same side: files do not always wind all faces the same way. Empty if there are none.
-fn turned_faces(faces: &[[u32; 3]], around: &Around) -> Vec<bool> {
-    let beside = |face: usize| (0..3).filter_map(move |edge| neighbour(faces, around, face, edge));
+fn flipped_faces(faces: &[[u32; 3]], corner_faces: &CornerFaces) -> Vec<bool> {
+    let neighbours =
+        |face: usize| (0..3).filter_map(move |edge| neighbour(faces, corner_faces, face, edge));
     let all = (0..faces.len()).into_par_iter();
-    if all.all(|face| beside(face).all(|(_, is_along)| !is_along)) {
+    if all.all(|face| neighbours(face).all(|(_, is_same_direction)| !is_same_direction)) {
         return Vec::new();
     }
-    let mut turned = vec![None; faces.len()];
+    let mut flipped = vec![None; faces.len()];
     let mut waiting = Vec::new();
     for first in 0..faces.len() {
-        if turned[first].is_none() {
-            turned[first] = Some(false);
+        if flipped[first].is_none() {
+            flipped[first] = Some(false);
             waiting.push(first);
         }
         while let Some(face) = waiting.pop() {
-            for (other, is_along) in beside(face) {
-                if turned[other].is_none() {
-                    turned[other] = Some((turned[face] == Some(true)) != is_along);
+            for (other, is_same_direction) in neighbours(face) {
+                if flipped[other].is_none() {
+                    flipped[other] = Some((flipped[face] == Some(true)) != is_same_direction);
                     waiting.push(other);
                 }
             }
         }
     }
-    turned.into_iter().map(|turn| turn == Some(true)).collect()
+    flipped.into_iter().map(|flip| flip == Some(true)).collect()
 }
 
 /// The face on the other side of an edge, and whether it traverses the edge in the same direction; `None` if there
 /// is no such face or more than one, and at a corner where too many faces meet.
 fn neighbour(
     faces: &[[u32; 3]],
-    around: &Around,
+    corner_faces: &CornerFaces,
     face: usize,
     edge: usize,
 ) -> Option<(usize, bool)> {
     let (from, to) = (faces[face][edge], faces[face][(edge + 1) % 3]);
-    let meeting = around.of_corner(from);
-    if meeting.len() > MOST_AROUND {
+    let faces_here = corner_faces.of_corner(from);
+    if faces_here.len() > MOST_FACES_AT_CORNER {
         return None;
     }
-    let others = meeting.iter().filter(|(other, _)| *other as usize != face);
-    let mut beside = others.filter_map(|&(other, corner)| {
+    let others = faces_here
+        .iter()
+        .filter(|(other, _)| *other as usize != face);
+    let mut neighbours = others.filter_map(|&(other, corner)| {
         let at = |step: usize| faces[other as usize][(corner as usize + step) % 3];
-        let is_along = at(1) == to;
-        (is_along || at(2) == to).then_some((other as usize, is_along))
+        let is_same_direction = at(1) == to;
+        (is_same_direction || at(2) == to).then_some((other as usize, is_same_direction))
     });
-    let only = beside.next();
-    only.filter(|_| beside.next().is_none())
+    let only = neighbours.next();
+    only.filter(|_| neighbours.next().is_none())
 }
 
 /// Upper bound of the distance by which points of the faces are lifted onto the curved surface, whichever side is
@@ -133,22 +136,22 @@ fn angle(triangle: &PackedTriangle<f64>, corner: usize) -> f64 {
 }
 
 fn curvature(triangle: &PackedTriangle<f64>, normals: &[Vec3<f64>; 3]) -> f64 {
-    let along = |from: usize, to: usize| {
+    let bend = |from: usize, to: usize| {
         let length = (triangle.corners[from] - triangle.corners[to]).length();
         (normals[from] - normals[to]).length() / length
     };
-    along(0, 1).max(along(1, 2)).max(along(2, 0))
+    bend(0, 1).max(bend(1, 2)).max(bend(2, 0))
 }
 
 /// The faces that meet at each corner.
-struct Around {
+struct CornerFaces {
     /// Start of each corner's faces in `faces`, and the end of the last ones.
     firsts: Vec<u32>,
     /// Faces, each with the index (0–2) that the corner has in it.
     faces: Vec<(u32, u8)>,
 }
 
-impl Around {
+impl CornerFaces {
     fn of(faces: &[[u32; 3]]) -> Self {
         let corners = faces.iter().flatten().max().map_or(0, |last| last + 1);
         let mut firsts = vec![0_u32; corners as usize + 1];
@@ -158,11 +161,11 @@ impl Around {
         for corner in 0..corners as usize {
             firsts[corner + 1] += firsts[corner];
         }
-        let mut free = firsts.clone();
+        let mut next_free = firsts.clone();
         let mut sorted = vec![(0, 0); faces.len() * 3];
         for (face, corners) in faces.iter().enumerate() {
             for (index, &corner) in corners.iter().enumerate() {
-                let next = &mut free[corner as usize];
+                let next = &mut next_free[corner as usize];
                 sorted[*next as usize] = (face as u32, index as u8);
                 *next += 1;
             }
@@ -258,7 +261,7 @@ mod tests {
         assert!(farthest[0].min(farthest[1]) < 1e-9, "{farthest:?}");
         let turned = triangles.iter().map(|triangle| {
             let mut turned = *triangle;
-            turned.turn();
+            turned.flip();
             turned
         });
         let turned: Vec<_> = turned.collect();

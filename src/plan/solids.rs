@@ -5,9 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::components::parts;
+use super::components::components_at_corners;
 use crate::mesh::are_closed;
-use crate::primitive::{Corner, PackedTriangle, corner};
+use crate::primitive::{Corner, PackedTriangle, corner_key};
 use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
@@ -71,7 +71,7 @@ pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
     });
     let Solids { triangles, solids } = Solids::made_of(triangles.collect());
     let faces = solids.into_iter().flatten();
-    faces.map(|face| triangles[face].map(corner)).collect()
+    faces.map(|face| triangles[face].map(corner_key)).collect()
 }
 
 /// The unit normal outwards, the distance from the origin along it, and the tolerance for points on the face.
@@ -87,17 +87,17 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
     let mut numbers = HashMap::new();
     let mut number = |point: DVec3| {
         let next = numbers.len() as u32;
-        *numbers.entry(corner(point)).or_insert(next)
+        *numbers.entry(corner_key(point)).or_insert(next)
     };
     let points: Vec<_> = triangles
         .iter()
         .map(|corners| corners.map(&mut number))
         .collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for (index, part) in parts(&points).into_iter().enumerate() {
+    for (index, component) in components_at_corners(&points).into_iter().enumerate() {
         // Components are numbered in order of their first triangle.
-        found.resize_with(found.len().max(part as usize + 1), Vec::new);
-        found[part as usize].push(index);
+        found.resize_with(found.len().max(component as usize + 1), Vec::new);
+        found[component as usize].push(index);
     }
     found
 }

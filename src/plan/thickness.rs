@@ -12,15 +12,15 @@ use crate::primitive::{PackedTriangle, Tip};
 use crate::simd::Vec3;
 
 /// Of the faces in a node, one in this many is measured for all of them, and also each that faces in a new direction.
-const MEASURED: usize = 8;
+const MEASURED_STEP: usize = 8;
 /// Cosine between the normals of two faces above which they face the same way.
-const ALIKE: f64 = 0.7;
+const SAME_SIDE_COSINE: f64 = 0.7;
 /// Maximum number of nodes visited behind a face: where the boxes of long thin faces overlap, it would be all of
 /// them.
 const MOST_NODES: usize = 256;
 /// Barycentric coordinates of the point where a face is measured: off the centroid, which lies in front of an edge
 /// of the opposite side if that is its mirror image.
-const NEARLY_MIDDLE: [f64; 3] = [0.38, 0.34, 0.28];
+const MEASURED_POINT: [f64; 3] = [0.38, 0.34, 0.28];
 
 /// Measures the least thickness of the mesh at each triangle: through the inside to the opposite side (Shapira,
 /// Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape diameter function", The
@@ -90,8 +90,8 @@ impl Faces<'_> {
         let (mut least, mut measured) = (f64::INFINITY, Vec::new());
         for (index, face) in node.members().enumerate() {
             let normal = self.triangles[face as usize].normal;
-            let is_alike = |other: &Vec3<f64>| ALIKE < normal.dot(*other);
-            if index.is_multiple_of(MEASURED) || !measured.iter().any(is_alike) {
+            let is_alike = |other: &Vec3<f64>| SAME_SIDE_COSINE < normal.dot(*other);
+            if index.is_multiple_of(MEASURED_STEP) || !measured.iter().any(is_alike) {
                 least = least.min(self.depth(face as usize));
                 measured.push(normal);
             }
@@ -102,24 +102,24 @@ impl Faces<'_> {
     /// The distance from about the middle of a face straight through the inside to the opposite side.
     fn depth(&self, face: usize) -> f64 {
         let [a, b, c] = self.triangles[face].corners;
-        let [of_a, of_b, of_c] = NEARLY_MIDDLE;
+        let [weight_a, weight_b, weight_c] = MEASURED_POINT;
         let normal = self.triangles[face].normal;
         let inwards = if self.inside_out[face] {
             normal
         } else {
             -normal
         };
-        let middle = a * of_a + b * of_b + c * of_c;
+        let middle = a * weight_a + b * weight_b + c * weight_c;
         let is_other = |other: u32| other as usize != face;
         let mut nearest = f64::INFINITY;
         let ray = ((middle, inwards), MOST_NODES);
-        let is_sure = cast(self.triangles, self.bvh, ray, |face, t| {
+        let is_complete = cast(self.triangles, self.bvh, ray, |face, t| {
             if is_other(face) {
                 nearest = nearest.min(t);
             }
             nearest
         });
-        if is_sure {
+        if is_complete {
             nearest
         } else {
             // As far as is known, thin by itself, so thin things are looked for there.

@@ -20,24 +20,24 @@ const CLEARANCE: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 impl<R: Real> Plan<R> {
     /// Finds the ties of a scene; `listed` gives the primitive numbers of objects outside of the tree by their
     /// indices.
-    pub fn tie(
+    pub fn find_ties(
         &mut self,
         scene: &Scene,
         (request, contacts): (&RenderRequest, &Contacts),
         listed: &HashMap<usize, usize>,
     ) {
         let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
-        let is_met = |found: &&Coincidence| !(is_perspective && self.hides(scene, found));
-        let met: Vec<&Coincidence> = contacts.shared.iter().filter(is_met).collect();
+        let is_relevant = |found: &&Coincidence| !(is_perspective && self.is_hidden(scene, found));
+        let relevant: Vec<&Coincidence> = contacts.shared.iter().filter(is_relevant).collect();
         // If all objects in one surface look alike, it does not matter which of them is in front.
         let look_alike = |found: &Coincidence| scene.look_alike(found.later, found.earlier);
-        let unlike = met.iter().filter(|found| !look_alike(found));
+        let unlike = relevant.iter().filter(|found| !look_alike(found));
         let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
-        let is_seen =
+        let has_effect =
             |found: &Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
         let mut ties: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
-        for found in met.iter().filter(|found| is_seen(found)) {
-            let numbers = |place| self.numbers_at(place, listed);
+        for found in relevant.iter().filter(|found| has_effect(found)) {
+            let numbers = |index| self.numbers_at(index, listed);
             let (later, earlier) = (numbers(found.later), numbers(found.earlier));
             let (Some(later), Some(earlier)) = (later, earlier) else {
                 continue;
@@ -54,7 +54,7 @@ impl<R: Real> Plan<R> {
         });
         let mut ties: Vec<Tie> = ties.collect();
         ties.sort_by_key(|tie| tie.numbers.start);
-        if !met.is_empty() {
+        if !relevant.is_empty() {
             self.clearance = R::from_f64(CLEARANCE);
         }
         self.ties = ties;
@@ -75,10 +75,10 @@ impl<R: Real> Plan<R> {
     /// Returns whether a solid that stands on an endless plane hides its faces there from the eye, which is on the
     /// same side and outside of the solid's box: no ray from the eye gets to the other side of the plane. A ray
     /// that starts in the solid, or on it, may see those faces.
-    fn hides(&self, scene: &Scene, found: &Coincidence) -> bool {
-        let places = [found.later, found.earlier];
-        let mesh = places.into_iter().find_map(|index| self.mesh_at(index));
-        let plane = places
+    fn is_hidden(&self, scene: &Scene, found: &Coincidence) -> bool {
+        let indices = [found.later, found.earlier];
+        let mesh = indices.into_iter().find_map(|index| self.mesh_at(index));
+        let plane = indices
             .into_iter()
             .find_map(|index| scene.objects[index].shape.plane_piece());
         let (Some(mesh), Some(plane)) = (mesh, plane) else {
@@ -90,16 +90,16 @@ impl<R: Real> Plan<R> {
         let BoundingBox { low, high } = mesh.member().bounds;
         let (low, high) = (low.to_dvec3(), high.to_dvec3());
         let eye = eye - self.centre;
-        let little = DVec3::splat(CLEARANCE * (low.abs().max(high.abs()).max_element()));
-        let is_beside = eye.cmplt(low - little).any() || eye.cmpgt(high + little).any();
+        let margin = DVec3::splat(CLEARANCE * (low.abs().max(high.abs()).max_element()));
+        let is_beside = eye.cmplt(low - margin).any() || eye.cmpgt(high + margin).any();
         found.extent == Overlap::Standing && mesh.is_solid() && is_between && is_beside
     }
 
     /// The mesh with this index in the scene's list.
-    fn mesh_at(&self, place: usize) -> Option<&MeshInstance<R>> {
+    fn mesh_at(&self, index: usize) -> Option<&MeshInstance<R>> {
         let meshes = &self.geometry.as_ref()?.meshes;
-        let found = meshes.binary_search_by_key(&place, |mesh| mesh.place);
-        found.ok().map(|index| &meshes[index])
+        let found = meshes.binary_search_by_key(&index, |mesh| mesh.object_index);
+        found.ok().map(|found| &meshes[found])
     }
 
     /// The tie of the primitive with this number.

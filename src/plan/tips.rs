@@ -4,13 +4,13 @@ use crate::primitive::{PackedTriangle, Tip, Vertex};
 use crate::simd::Vec3;
 
 /// Least cosine between the edges of a sharp point and their mean direction.
-const SHARP: f64 = 0.75;
+const MIN_SHARP_COSINE: f64 = 0.75;
 /// Number of faces at a sharp point up to which thin things are looked for wherever a face is narrow. With more, as
 /// in a round cone, faces are narrow everywhere, but the cone itself only near its point.
-const FEW: u32 = 8;
+const MAX_NARROW_FACES: u32 = 8;
 /// Number of faces at a point above which nothing is looked for, since every ray near the point would look for each
 /// of them.
-const MOST: u32 = 128;
+const MAX_FACES: u32 = 128;
 
 /// The edges that meet at a point.
 #[derive(Clone, Copy)]
@@ -19,22 +19,22 @@ struct PointEdges {
     /// The sum of the edges' unit directions.
     axis: Vec3<f64>,
     /// The least cosine between an edge and the axis.
-    least: f64,
+    min_cosine: f64,
     /// The greatest such cosine.
-    greatest: f64,
+    max_cosine: f64,
 }
 
 impl PointEdges {
     /// The tip of the faces around the point, seen as their corner `which`.
     fn tip(&self, which: Vertex) -> Tip {
-        if self.least <= SHARP || MOST < self.faces {
+        if self.min_cosine <= MIN_SHARP_COSINE || MAX_FACES < self.faces {
             return Tip::Nowhere;
         }
-        if self.faces <= FEW {
+        if self.faces <= MAX_NARROW_FACES {
             return Tip::Narrow;
         }
         // The width across the point per distance from it, seen from where that is smallest.
-        let tangent = (1.0 - self.greatest.powi(2)).max(0.0).sqrt() / self.greatest;
+        let tangent = (1.0 - self.max_cosine.powi(2)).max(0.0).sqrt() / self.max_cosine;
         Tip::round(which, 2.0 * tangent)
     }
 }
@@ -68,8 +68,8 @@ fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<
     let empty = PointEdges {
         faces: 0,
         axis: Vec3::splat(0.0),
-        least: 1.0,
-        greatest: 0.0,
+        min_cosine: 1.0,
+        max_cosine: 0.0,
     };
     let mut around = vec![empty; count as usize];
     for (triangle, numbers) in triangles.iter().zip(points) {
@@ -88,8 +88,8 @@ fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<
             let axis = axis.unwrap_or(Vec3::splat(0.0));
             for edge in edges_from(triangle, corner) {
                 let cosine = axis.dot(edge);
-                point.least = point.least.min(cosine);
-                point.greatest = point.greatest.max(cosine);
+                point.min_cosine = point.min_cosine.min(cosine);
+                point.max_cosine = point.max_cosine.max(cosine);
             }
         }
     }
@@ -148,7 +148,7 @@ mod tests {
         let cone = pyramid(40, 5.0, true);
         assert!(are_all(&cone[..40], Tip::round(Vertex::A, 0.4)), "{cone:?}");
         assert!(are_all(&cone[40..], Tip::Nowhere), "{cone:?}");
-        let rounder = pyramid(MOST + 1, 5.0, true);
+        let rounder = pyramid(MAX_FACES + 1, 5.0, true);
         assert!(are_all(&rounder, Tip::Nowhere), "{rounder:?}");
     }
 }

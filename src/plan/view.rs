@@ -44,11 +44,11 @@ impl<R: Real> View<R> {
             Projection::Orthographic => (camera.orthographic_height, -w),
         };
         let (width, height) = (f64::from(request.width), f64::from(request.height));
-        let aside = match request.sampling {
+        let shift = match request.sampling {
             Sampling::Adaptive { .. } => SAMPLE_SHIFT,
             _ => (0.0, 0.0),
         };
-        let half = (width / 2.0 - aside.0, height / 2.0 - aside.1);
+        let half = (width / 2.0 - shift.0, height / 2.0 - shift.1);
         let pixel = R::from_f64(1.0 / height);
         let (right, ahead) = (Vec3::from_dvec3(u * scale), Vec3::from_dvec3(forward));
         Self {

@@ -67,14 +67,14 @@ impl<L: SimdFloat> Blur<L> {
         }
     }
 
-    /// The blur of secondary rays from hits that may be off by `off`, in addition to `self`; `turn` is the change
+    /// The blur of secondary rays from hits that may be off by `off`, in addition to `self`; `deviation` is the change
     /// of their direction that results from it.
     #[inline(always)]
     #[must_use]
-    pub fn onwards(&self, off: L, turn: L) -> Self {
+    pub fn onwards(&self, off: L, deviation: L) -> Self {
         Self {
             start: off + self.start,
-            spread: self.spread + turn,
+            spread: self.spread + deviation,
             ..*self
         }
     }

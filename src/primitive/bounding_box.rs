@@ -41,20 +41,20 @@ impl<R: Real> BoundingBox<R> {
 
     /// The union of two boxes.
     #[must_use]
-    pub fn and(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
         }
     }
 
-    /// The box enlarged by `by` on every side.
+    /// The box enlarged by `margin` on every side.
     #[must_use]
-    pub fn widened(&self, by: R) -> Self {
-        let by = Vec3::splat(by);
+    pub fn widened(&self, margin: R) -> Self {
+        let margin = Vec3::splat(margin);
         Self {
-            low: self.low - by,
-            high: self.high + by,
+            low: self.low - margin,
+            high: self.high + margin,
         }
     }
 
@@ -65,19 +65,19 @@ impl<R: Real> BoundingBox<R> {
         (middle, (self.high - self.low).length() * half)
     }
 
-    /// Returns the distance at which rays enter the box enlarged by `beside` on every side; infinity where they
+    /// Returns the distance at which rays enter the box enlarged by `margin` on every side; infinity where they
     /// miss it. Not inlined, since it is long and few rays need it.
     #[inline(never)]
-    pub fn entry<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, beside: L) -> L {
+    pub fn entry<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, margin: L) -> L {
         L::vectorize(
-            beside.token(),
+            margin.token(),
             #[inline(always)]
             || {
-                let slack = Vec3::splat(beside);
+                let slack = Vec3::splat(margin);
                 let low = slack.like(self.low) - rays.origin - slack;
                 let high = slack.like(self.high) - rays.origin + slack;
-                let infinity = beside.like(R::INFINITY);
-                let (mut near, mut far) = (beside.like(R::ZERO), infinity);
+                let infinity = margin.like(R::INFINITY);
+                let (mut near, mut far) = (margin.like(R::ZERO), infinity);
                 let inverse = inverse(rays.direction);
                 let axes = [
                     (low.x, high.x, inverse.x),

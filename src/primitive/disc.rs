@@ -77,10 +77,12 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
     #[inline(always)]
     fn intersect<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, (): &(), _methods: &Methods) -> L {
         let normal = rays.origin.like(self.normal);
-        let from = rays.origin - rays.origin.like(self.center);
-        let t = -normal.dot(from) / normal.dot(rays.direction);
-        let off = from + rays.direction * t;
-        let is_inside = off.dot(off).at_most(t.like(self.radius * self.radius));
+        let from_center = rays.origin - rays.origin.like(self.center);
+        let t = -normal.dot(from_center) / normal.dot(rays.direction);
+        let hit_offset = from_center + rays.direction * t;
+        let is_inside = hit_offset
+            .dot(hit_offset)
+            .at_most(t.like(self.radius * self.radius));
         let is_ahead = t.like(R::ZERO).less(t);
         L::select(is_inside & is_ahead, t, t.like(R::INFINITY))
     }
@@ -96,10 +98,10 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         (blur, wanted): (&Blur<L>, L::Mask),
     ) -> Option<(L, L)> {
         let normal = rays.origin.like(self.normal);
-        let from = rays.origin - rays.origin.like(self.center);
-        let radius = from.x.like(self.radius);
-        let b = -rays.direction.dot(from);
-        let perpendicular = from + rays.direction * b;
+        let from_center = rays.origin - rays.origin.like(self.center);
+        let radius = from_center.x.like(self.radius);
+        let b = -rays.direction.dot(from_center);
+        let perpendicular = from_center + rays.direction * b;
         let width = blur.around(b.abs(), radius);
         let reach = radius + width;
         let comes_near = perpendicular.dot(perpendicular).at_most(reach * reach);
@@ -107,20 +109,22 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
             return None;
         }
         let infinity = b.like(R::INFINITY);
-        let (height, speed) = (normal.dot(from), normal.dot(rays.direction));
-        let off = from - rays.direction * (height / speed);
-        let aside = width / speed.abs();
-        let bound = aside * (radius + radius + aside);
-        let passes_rim = (off.dot(off) - radius * radius).abs().at_most(bound);
-        let is_open = passes_rim | speed.abs().at_most(blur.spread.abs());
-        let is_open = comes_near & (is_open | height.abs().at_most(blur.at(radius)));
+        let (height, speed) = (normal.dot(from_center), normal.dot(rays.direction));
+        let hit_offset = from_center - rays.direction * (height / speed);
+        let rim_shift = width / speed.abs();
+        let bound = rim_shift * (radius + radius + rim_shift);
+        let passes_rim = (hit_offset.dot(hit_offset) - radius * radius)
+            .abs()
+            .at_most(bound);
+        let is_undecided = passes_rim | speed.abs().at_most(blur.spread.abs());
+        let is_undecided = comes_near & (is_undecided | height.abs().at_most(blur.at(radius)));
         let distance = self.intersect(rays, &(), methods);
-        if !(wanted & is_open).any() {
+        if !(wanted & is_undecided).any() {
             return Some((distance, infinity));
         }
         let around = BoundingBox::around_ball(self.center, self.radius);
         let entry = around.entry(rays, width);
-        Some((distance, L::select(is_open, entry, infinity)))
+        Some((distance, L::select(is_undecided, entry, infinity)))
     }
 
     #[inline(always)]
@@ -153,20 +157,22 @@ impl<R: Real> Primitive<R> for PackedDisc<R> {
         let x = rays.origin - rays.origin.like(self.center);
         let radius = x.x.like(self.radius);
         let along = -rays.direction.dot(x);
-        let aside = x + rays.direction * along;
+        let offset = x + rays.direction * along;
         let cosine = normal.dot(rays.direction);
-        let square = aside.dot(aside);
+        let square = offset.dot(offset);
         // The component along the short axis, in the direction of the normal's component across the ray.
         let sine_square = (cosine.like(R::ONE) - cosine * cosine).max(cosine.like(R::ZERO));
-        let lean = aside.dot(normal);
+        let short_part = offset.dot(normal);
         let zero = along.like(R::ZERO);
-        let is_leaning = zero.less(sine_square);
-        // Rounding magnifies a small lean, but a component is at most the whole.
-        let short = L::select(is_leaning, lean * lean / sine_square, zero).min(square);
-        let long = square - short;
-        let by_ellipse = (short + long * cosine * cosine).sqrt() - radius * cosine.abs();
+        let is_tilted = zero.less(sine_square);
+        // Rounding magnifies a small component, but a component is at most the whole.
+        let short_square =
+            L::select(is_tilted, short_part * short_part / sine_square, zero).min(square);
+        let long_square = square - short_square;
+        let by_ellipse =
+            (short_square + long_square * cosine * cosine).sqrt() - radius * cosine.abs();
         let by_circle = square.sqrt() - radius;
-        let half_chord = ((radius * radius - long).max(zero) * sine_square).sqrt();
+        let half_chord = ((radius * radius - long_square).max(zero) * sine_square).sqrt();
         Some(Approach {
             from: along - half_chord,
             to: along + half_chord,

@@ -56,9 +56,9 @@ macro_rules! kinds {
         #[derive(Clone, Debug)]
         pub struct Primitives<R> {
             $(#[doc = concat!("Every [`", stringify!($packed), "`].")] pub $list: Vec<$packed<R>>,)*
-            /// For each triangle, the first triangle of the thing that it is part of, or `None` if it is one by
+            /// For each triangle, the first triangle of the component that it is part of, or `None` if it is one by
             /// itself; empty if all are.
-            pub things: Vec<Option<u32>>,
+            pub components: Vec<Option<u32>>,
         }
 
         /// Data derived from ray directions for the test of each kind.
@@ -77,7 +77,7 @@ macro_rules! kinds {
 
         impl<R> Default for Primitives<R> {
             fn default() -> Self {
-                Self { $($list: Vec::new(),)* things: Vec::new() }
+                Self { $($list: Vec::new(),)* components: Vec::new() }
             }
         }
 
@@ -88,11 +88,11 @@ macro_rules! kinds {
                     $(Shape::$kind(description) => {
                         let index = self.$list.len();
                         self.$list.push($packed::pack(description, material, packing)?);
-                        let place = |projector| $packed::<R>::rectangle(description, projector);
+                        let to_rectangle = |projector| $packed::<R>::rectangle(description, projector);
                         Some(Packed {
                             kind: Kind::$kind,
                             index,
-                            rectangle: packing.projector.and_then(place),
+                            rectangle: packing.projector.and_then(to_rectangle),
                         })
                     }),*
                     // A mesh is many primitives, which are stored elsewhere.
@@ -169,13 +169,13 @@ impl<R: Real> Primitives<R> {
         })
     }
 
-    /// The number of the first primitive of the thing that a primitive is part of: its own, if it is one by itself.
+    /// The number of the first primitive of the component that a primitive is part of: its own, if it is one by itself.
     #[inline(always)]
-    pub fn thing_of(&self, number: usize) -> usize {
+    pub fn component_of(&self, number: usize) -> usize {
         let first = self.firsts()[Kind::Triangle as usize];
         let index = number.checked_sub(first);
-        let thing = index.and_then(|index| *self.things.get(index)?);
-        thing.map_or(number, |thing| first + thing as usize)
+        let component = index.and_then(|index| *self.components.get(index)?);
+        component.map_or(number, |component| first + component as usize)
     }
 
     /// The number of primitives.

@@ -43,7 +43,7 @@ pub struct Projector {
     projection: Projection,
     /// Pixels per unit of (lateral distance / depth), or per world unit.
     scale: f64,
-    half: (f64, f64),
+    half_size: (f64, f64),
     margin: f64,
 }
 
@@ -61,20 +61,20 @@ impl Projector {
             basis: camera.basis()?,
             projection: camera.projection,
             scale,
-            half: (f64::from(width) / 2.0, height / 2.0),
+            half_size: (f64::from(width) / 2.0, height / 2.0),
             margin,
         })
     }
 
     /// The position of a point to the right of, above and ahead of the camera.
-    fn seen(&self, point: DVec3) -> [f64; 3] {
-        let seen = self.basis.transpose_mul_vec3(point - self.position);
-        [seen.x, seen.y, -seen.z]
+    fn in_camera(&self, point: DVec3) -> [f64; 3] {
+        let in_camera = self.basis.transpose_mul_vec3(point - self.position);
+        [in_camera.x, in_camera.y, -in_camera.z]
     }
 
     /// The rectangle around a ball.
     pub fn ball(&self, center: DVec3, radius: f64) -> Rectangle {
-        let [x, y, depth] = self.seen(center);
+        let [x, y, depth] = self.in_camera(center);
         let range = match self.projection {
             Projection::Orthographic => {
                 |at: f64, _: f64, radius: f64| Some((at - radius, at + radius))
@@ -89,8 +89,9 @@ impl Projector {
 
     /// The rectangle around a triangle.
     pub fn triangle(&self, corners: [DVec3; 3]) -> Rectangle {
-        let flat = self.flat(corners);
-        let range = |axis: usize| flat.map(|flat| bounds(flat.map(|place| place[axis])));
+        let on_image_plane = self.on_image_plane(corners);
+        let range =
+            |axis: usize| on_image_plane.map(|corners| bounds(corners.map(|point| point[axis])));
         Rectangle {
             columns: self.columns(range(0)),
             rows: self.rows(range(1)),
@@ -99,17 +100,17 @@ impl Projector {
 
     /// The corners of a triangle on the image plane, to the right of and above its middle; `None` if one is not
     /// ahead.
-    fn flat(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
-        let seen = corners.map(|corner| self.seen(corner));
-        let size = seen
+    fn on_image_plane(&self, corners: [DVec3; 3]) -> Option<[[f64; 2]; 3]> {
+        let in_camera = corners.map(|corner| self.in_camera(corner));
+        let size = in_camera
             .iter()
             .flatten()
             .fold(0.0, |size: f64, part| size.max(part.abs()));
         match self.projection {
-            Projection::Orthographic => Some(seen.map(|[x, y, _]| [x, y])),
+            Projection::Orthographic => Some(in_camera.map(|[x, y, _]| [x, y])),
             Projection::Perspective => {
-                let is_ahead = seen.iter().all(|[_, _, depth]| *depth > size * 1e-6);
-                is_ahead.then(|| seen.map(|[x, y, depth]| [x / depth, y / depth]))
+                let is_ahead = in_camera.iter().all(|[_, _, depth]| *depth > size * 1e-6);
+                is_ahead.then(|| in_camera.map(|[x, y, depth]| [x / depth, y / depth]))
             }
         }
     }
@@ -124,8 +125,8 @@ impl Projector {
     fn columns(&self, range: Option<(f64, f64)>) -> Extent {
         range.map_or(ANYWHERE, |(from, to)| {
             self.extent(
-                self.half.0 + from * self.scale,
-                self.half.0 + to * self.scale,
+                self.half_size.0 + from * self.scale,
+                self.half_size.0 + to * self.scale,
             )
         })
     }
@@ -133,8 +134,8 @@ impl Projector {
     fn rows(&self, range: Option<(f64, f64)>) -> Extent {
         range.map_or(ANYWHERE, |(from, to)| {
             self.extent(
-                self.half.1 - to * self.scale,
-                self.half.1 - from * self.scale,
+                self.half_size.1 - to * self.scale,
+                self.half_size.1 - from * self.scale,
             )
         })
     }

@@ -3,7 +3,7 @@
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Least size of a direction's component when inverted; its reciprocal is still finite in single precision.
-const LEAST: f64 = 1e-30;
+const MIN_COMPONENT: f64 = 1e-30;
 
 /// Rays: origins and unit directions.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +23,9 @@ impl<L: SimdFloat> Ray<L> {
 
     /// The perpendicular distance of a point from the rays' lines.
     #[inline(always)]
-    pub fn beside(&self, point: Vec3<L::Real>) -> L {
-        let to = self.origin.like(point) - self.origin;
-        (to - self.direction * to.dot(self.direction)).length()
+    pub fn distance_to(&self, point: Vec3<L::Real>) -> L {
+        let to_point = self.origin.like(point) - self.origin;
+        (to_point - self.direction * to_point.dot(self.direction)).length()
     }
 }
 
@@ -40,8 +40,8 @@ pub fn inverse<L: SimdFloat>(direction: Vec3<L>) -> Vec3<L> {
 }
 
 #[inline(always)]
-fn one_over<L: SimdFloat>(along: L) -> L {
-    let size = along.abs().max(along.like_f64(LEAST));
-    let along = L::select(along.less(along.like(L::Real::ZERO)), -size, size);
-    along.like(L::Real::ONE) / along
+fn one_over<L: SimdFloat>(component: L) -> L {
+    let size = component.abs().max(component.like_f64(MIN_COMPONENT));
+    let component = L::select(component.less(component.like(L::Real::ZERO)), -size, size);
+    component.like(L::Real::ONE) / component
 }

@@ -51,9 +51,9 @@ impl<L: SimdFloat> Round<L> {
         } = *self;
         let outwards = rays.at(t) - center;
         // 1/|p - c| by one step of Newton's method from 1/R, which is close to it.
-        let near = outwards * curvature;
-        let correction = t.like_f64(1.5) - near.dot(near) * t.like_f64(0.5);
-        let normal = near * correction;
+        let approximate = outwards * curvature;
+        let correction = t.like_f64(1.5) - approximate.dot(approximate) * t.like_f64(0.5);
+        let normal = approximate * correction;
         SurfacePoint {
             point: center + normal * radius,
             normal,
@@ -160,8 +160,8 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
         }
         let around = BoundingBox::around_ball(self.center, self.radius);
         let entry = around.entry(rays, width);
-        let from = L::select(grazes, entry, infinity);
-        Some((distance, L::select(starts_on_it, zero, from)))
+        let undecided_from = L::select(grazes, entry, infinity);
+        Some((distance, L::select(starts_on_it, zero, undecided_from)))
     }
 
     /// t = -2·d·(p - c), or infinity. The root at t = 0 is the start itself and never counts, however

@@ -201,7 +201,7 @@ impl Animation {
 
     /// Returns the duration in seconds of one loop of repeated playback. If the animation ends as it starts, this
     /// is [`Self::duration`]; otherwise the last frame is shown as long as every other.
-    pub fn seconds_of_round(&self) -> f64 {
+    pub fn loop_duration(&self) -> f64 {
         fn is_closed<T: PartialEq>(keys: &[Key<T>]) -> bool {
             let ends = keys.first().zip(keys.last());
             ends.is_none_or(|(first, last)| first.value == last.value)

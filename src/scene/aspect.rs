@@ -34,11 +34,11 @@ pub enum Aspect {
     /// Number of rays per pixel, averaged over blocks of 8 × 8 pixels.
     Cost,
     /// Samples that are traced again in double precision.
-    Again,
+    Retraced,
 }
 
 /// Golden angle in turns: steps of this size give neighbouring objects the most distinct hues.
-const GOLDEN: f64 = 0.381_966_011_250_105;
+const GOLDEN_TURN: f64 = 0.381_966_011_250_105;
 /// Grey level of [`Aspect::Clay`], 0–255.
 const CLAY: f64 = 200.0;
 
@@ -94,7 +94,7 @@ impl Aspect {
             "Rays per pixel, averaged over squares of 8 pixels: black is 1, white 1,000",
         ),
         (
-            Self::Again,
+            Self::Retraced,
             "Traced again",
             "Samples that are traced again in double precision, since rounding might change them: white, in a dark picture",
         ),
@@ -102,15 +102,15 @@ impl Aspect {
 
     /// The name in the user interface.
     pub fn name(self) -> &'static str {
-        self.words_of().0
+        self.name_and_meaning().0
     }
 
     /// A phrase that describes what is shown.
     pub fn meaning(self) -> &'static str {
-        self.words_of().1
+        self.name_and_meaning().1
     }
 
-    fn words_of(self) -> (&'static str, &'static str) {
+    fn name_and_meaning(self) -> (&'static str, &'static str) {
         let mut all = Self::EACH.iter();
         all.find(|(aspect, ..)| *aspect == self)
             .map_or(("", ""), |(_, name, meaning)| (name, meaning))
@@ -137,7 +137,7 @@ impl Aspect {
             shown.packs_mut().values_mut().for_each(change);
         };
         match self {
-            Self::All | Self::Mirrors | Self::Cost | Self::Again => {}
+            Self::All | Self::Mirrors | Self::Cost | Self::Retraced => {}
             Self::Normals | Self::Depth => unlit(&mut shown),
             Self::Shadows => {
                 clay(&mut shown);
@@ -149,7 +149,7 @@ impl Aspect {
                     light.intensity = 1.0;
                 }
             }
-            Self::Ambient => darken(&mut shown),
+            Self::Ambient => switch_off_lights(&mut shown),
             Self::Diffuse => {
                 shown.ambient_intensity = 0.0;
                 change(&mut shown, |pack| pack.specular = DVec3::ZERO);
@@ -163,7 +163,7 @@ impl Aspect {
             }
             Self::WithoutMirrors => change(&mut shown, |pack| pack.reflective = false),
             Self::Clay => clay(&mut shown),
-            Self::Objects => flat(&mut shown),
+            Self::Objects => color_by_object(&mut shown),
         }
         shown
     }
@@ -183,7 +183,7 @@ fn clay(shown: &mut Scene) {
 }
 
 /// Sets the intensity of all lights to zero.
-fn darken(shown: &mut Scene) {
+fn switch_off_lights(shown: &mut Scene) {
     for light in shown.lights.iter_mut() {
         light.intensity = 0.0;
     }
@@ -191,7 +191,7 @@ fn darken(shown: &mut Scene) {
 
 /// Removes all lights, the background and reflections.
 fn unlit(shown: &mut Scene) {
-    darken(shown);
+    switch_off_lights(shown);
     shown.background = DVec3::ZERO;
     for pack in shown.packs_mut().values_mut() {
         pack.reflective = false;
@@ -199,8 +199,8 @@ fn unlit(shown: &mut Scene) {
 }
 
 /// Gives each object its own colour, independent of lighting.
-fn flat(shown: &mut Scene) {
-    darken(shown);
+fn color_by_object(shown: &mut Scene) {
+    switch_off_lights(shown);
     shown.ambient_intensity = 1.0;
     let mut word = "object".to_owned();
     while shown.color_packs.keys().any(|name| name.starts_with(&word)) {
@@ -214,7 +214,7 @@ fn flat(shown: &mut Scene) {
     }
     for (index, name) in names.into_iter().enumerate() {
         let pack = ColorPack {
-            ambient: hue(index as f64 * GOLDEN),
+            ambient: hue(index as f64 * GOLDEN_TURN),
             ..ColorPack::default()
         };
         shown.packs_mut().insert(name, pack);
@@ -223,8 +223,8 @@ fn flat(shown: &mut Scene) {
 
 /// Returns a light colour with a hue given in turns.
 fn hue(turns: f64) -> DVec3 {
-    let channel = |off: f64| {
-        let wave = ((turns + off).fract() * 6.0 - 3.0).abs() - 1.0;
+    let channel = |phase: f64| {
+        let wave = ((turns + phase).fract() * 6.0 - 3.0).abs() - 1.0;
         70.0 + 180.0 * wave.clamp(0.0, 1.0)
     };
     DVec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
@@ -245,7 +245,7 @@ mod tests {
         for (aspect, name, _) in &Aspect::EACH[1..] {
             let shown = aspect.of(&demo);
             // These aspects are produced by the tracer, from an unchanged scene.
-            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Again);
+            let is_traced = matches!(aspect, Aspect::Mirrors | Aspect::Cost | Aspect::Retraced);
             assert_eq!(shown == demo, is_traced, "{name}");
             assert_eq!(check(&shown), Ok(()), "{name}");
         }

@@ -60,7 +60,7 @@ pub struct Framing {
 }
 
 /// Factor by which a framed sphere is enlarged, to leave a margin around it.
-const ROOM: f64 = 1.15;
+const FRAMING_MARGIN: f64 = 1.15;
 /// Smallest sine of the angle between `look_at` and `up` that still defines a basis.
 const MIN_SINE: f64 = 1e-6;
 /// Largest difference that rounding may cause, in directions, and in positions as a share of their coordinates.
@@ -112,7 +112,10 @@ impl Camera {
     /// (width over height). The viewing direction is unchanged.
     #[must_use]
     pub fn around(&self, aspect: f64, (low, high): (DVec3, DVec3)) -> Self {
-        let (middle, radius) = (low * 0.5 + high * 0.5, (high - low).length() * 0.5 * ROOM);
+        let (middle, radius) = (
+            low * 0.5 + high * 0.5,
+            (high - low).length() * 0.5 * FRAMING_MARGIN,
+        );
         let forward = self.look_at.normalize_or_zero();
         let mut next = self.clone();
         // The shorter side of the picture, in picture heights.
@@ -140,27 +143,27 @@ impl Framing {
     /// Returns the position of a point in the picture, in image heights from its centre, y up; `None` behind the
     /// eye (perspective) or the view window (orthographic).
     pub fn project(&self, point: DVec3) -> Option<[f64; 2]> {
-        self.place(point - self.frame.translation, self.orthographic_height)
+        self.picture_position(point - self.frame.translation, self.orthographic_height)
     }
 
     /// Returns the position in the picture of a point at infinity in this direction. `None` behind the eye, and in
     /// orthographic projection, where all such points coincide.
     pub fn project_direction(&self, direction: DVec3) -> Option<[f64; 2]> {
         match self.projection {
-            Projection::Perspective => self.place(direction, 1.0),
+            Projection::Perspective => self.picture_position(direction, 1.0),
             Projection::Orthographic => None,
         }
     }
 
-    fn place(&self, arm: DVec3, height: f64) -> Option<[f64; 2]> {
-        let seen = self.frame.matrix3.transpose_mul_vec3(arm);
-        let depth = -seen.z;
+    fn picture_position(&self, offset: DVec3, height: f64) -> Option<[f64; 2]> {
+        let in_camera = self.frame.matrix3.transpose_mul_vec3(offset);
+        let depth = -in_camera.z;
         let scale = match self.projection {
             Projection::Perspective => self.projection_distance / depth,
             Projection::Orthographic => 1.0 / height,
         };
-        let place = [seen.x * scale, seen.y * scale];
-        (depth > 0.0 && place.iter().all(|part| part.is_finite())).then_some(place)
+        let position = [in_camera.x * scale, in_camera.y * scale];
+        (depth > 0.0 && position.iter().all(|part| part.is_finite())).then_some(position)
     }
 
     /// Returns the origin and unit direction of the ray through a position in the picture, in image heights from
@@ -228,12 +231,15 @@ mod tests {
                 ..Camera::default()
             };
             let framing = camera.framing().expect("a basis");
-            for place in [[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]] {
-                let (origin, direction) = framing.ray(place);
+            for position in [[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]] {
+                let (origin, direction) = framing.ray(position);
                 let [x, y] = framing
                     .project(origin + direction * 70.0)
                     .expect("in front");
-                assert!((x - place[0]).hypot(y - place[1]) < 1e-12, "{projection:?}");
+                assert!(
+                    (x - position[0]).hypot(y - position[1]) < 1e-12,
+                    "{projection:?}"
+                );
                 assert_eq!(framing.project(origin - direction * 70.0), None);
             }
         }

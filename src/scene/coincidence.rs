@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::list::List;
 pub use super::mesh_coincidence::{Coincidence, Overlap};
-use super::mesh_coincidence::{counts_down, meet, mesh_coincidences, widened};
+use super::mesh_coincidence::{boxes_overlap, mesh_coincidences, try_spend, widened};
 use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape, Sphere};
 
@@ -24,7 +24,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     if objects.len() > MOST_OBJECTS {
         return Vec::new();
     }
-    let (mut left, mut pairs) = (MOST_COMPARED, MOST_PAIRS);
+    let (mut comparisons, mut pairs) = (MOST_COMPARED, MOST_PAIRS);
     let visible = objects.iter().enumerate();
     let visible = visible.filter(|(_, object)| object.visible);
     let mut found = Vec::new();
@@ -38,7 +38,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
                 Some(bounds) => pieces.push(FlatPiece {
                     index,
                     flat,
-                    around: widened(bounds),
+                    bounds: widened(bounds),
                 }),
                 None => endless.push((index, flat)),
             }
@@ -62,19 +62,19 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
             });
         }
     };
-    for (place, (index, flat)) in endless.iter().enumerate() {
-        let others = endless[..place].iter().map(|(other, flat)| (*other, flat));
+    for (rank, (index, flat)) in endless.iter().enumerate() {
+        let others = endless[..rank].iter().map(|(other, flat)| (*other, flat));
         let others = others.chain(pieces.iter().map(|piece| (piece.index, &piece.flat)));
-        for other in others.take_while(|_| counts_down(&mut left)) {
+        for other in others.take_while(|_| try_spend(&mut comparisons)) {
             add((*index, flat), other);
         }
     }
-    pieces.sort_by(|a, b| a.around.0.x.total_cmp(&b.around.0.x));
-    for (place, one) in pieces.iter().enumerate() {
-        let others = pieces[place + 1..].iter();
-        let near = others.take_while(|other| other.around.0.x <= one.around.1.x);
-        for other in near.take_while(|_| counts_down(&mut pairs)) {
-            if meet(one.around, other.around) && counts_down(&mut left) {
+    pieces.sort_by(|a, b| a.bounds.0.x.total_cmp(&b.bounds.0.x));
+    for (rank, one) in pieces.iter().enumerate() {
+        let others = pieces[rank + 1..].iter();
+        let near = others.take_while(|other| other.bounds.0.x <= one.bounds.1.x);
+        for other in near.take_while(|_| try_spend(&mut pairs)) {
+            if boxes_overlap(one.bounds, other.bounds) && try_spend(&mut comparisons) {
                 add((one.index, &one.flat), (other.index, &other.flat));
             }
         }
@@ -89,17 +89,17 @@ fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
     balls.sort_by(|(_, one), (_, other)| one.along().total_cmp(&other.along()));
     let mut is_known = vec![false; balls.len()];
     let mut pairs = MOST_PAIRS;
-    for place in 0..balls.len() {
-        if is_known[place] {
+    for rank in 0..balls.len() {
+        if is_known[rank] {
             continue;
         }
-        let (index, one) = balls[place];
-        let last = one.along() + one.room();
-        let others = balls.iter().enumerate().skip(place + 1);
+        let (index, one) = balls[rank];
+        let last = one.along() + one.along_tolerance();
+        let others = balls.iter().enumerate().skip(rank + 1);
         let near = others.take_while(|(_, (_, other))| other.along() <= last);
-        let near = near.take_while(|_| counts_down(&mut pairs));
+        let near = near.take_while(|_| try_spend(&mut pairs));
         let same = near.filter(|(_, (_, other))| one.is_same(other));
-        let same: Vec<(usize, usize)> = same.map(|(place, (index, _))| (place, *index)).collect();
+        let same: Vec<(usize, usize)> = same.map(|(rank, (index, _))| (rank, *index)).collect();
         let all = same.iter().map(|(_, index)| *index).chain([index]);
         let earliest = all.clone().min().unwrap_or(index);
         let later = all.filter(|index| *index != earliest);
@@ -108,8 +108,8 @@ fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
             earlier: earliest,
             extent: Overlap::Whole,
         }));
-        for (place, _) in same {
-            is_known[place] = true;
+        for (rank, _) in same {
+            is_known[rank] = true;
         }
     }
 }
@@ -119,7 +119,7 @@ struct FlatPiece {
     index: usize,
     flat: PlanePiece,
     /// Its bounding box, slightly widened.
-    around: (DVec3, DVec3),
+    bounds: (DVec3, DVec3),
 }
 
 #[cfg(test)]

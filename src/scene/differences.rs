@@ -9,19 +9,19 @@ use crate::words::{counted, listed};
 /// Empty for equal scenes.
 pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let mut lines = Vec::new();
-    named(
+    compare_named(
         "object",
         scene.objects.iter().map(|object| (&object.name, object)),
         other.objects.iter().map(|object| (&object.name, object)),
         &mut lines,
     );
-    named(
+    compare_named(
         "light",
         scene.lights.iter().map(|light| (&light.name, light)),
         other.lights.iter().map(|light| (&light.name, light)),
         &mut lines,
     );
-    named(
+    compare_named(
         "color pack",
         scene.color_packs.iter(),
         other.color_packs.iter(),
@@ -52,7 +52,7 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
 }
 
 /// Appends a line each for the added, removed and changed items, which are identified by name.
-fn named<'a, T: PartialEq + 'a>(
+fn compare_named<'a, T: PartialEq + 'a>(
     one: &str,
     before: impl Iterator<Item = (&'a String, &'a T)>,
     after: impl Iterator<Item = (&'a String, &'a T)>,
@@ -64,15 +64,15 @@ fn named<'a, T: PartialEq + 'a>(
     let removed = before.keys().filter(|name| !after.contains_key(*name));
     let changed = after
         .iter()
-        .filter(|(name, thing)| before.get(*name).is_some_and(|old| old != *thing))
+        .filter(|(name, item)| before.get(*name).is_some_and(|old| old != *item))
         .map(|(name, _)| name);
     let added: Vec<_> = added.collect();
     let removed: Vec<_> = removed.collect();
     let changed: Vec<_> = changed.collect();
     for (what, names) in [("added", added), ("removed", removed), ("changed", changed)] {
         let count = counted(names.len(), one);
-        let named = listed(names.into_iter().map(|name| (*name).clone()));
-        lines.extend(named.map(|named| format!("{count} {what}: {named}")));
+        let list = listed(names.into_iter().map(|name| (*name).clone()));
+        lines.extend(list.map(|list| format!("{count} {what}: {list}")));
     }
 }
 

@@ -54,14 +54,14 @@ impl Example {
             .mesh
             .and_then(|bytes| read_ply(bytes).ok())
             .map(Arc::new);
-        if let Some(read) = triangles {
+        if let Some(loaded) = triangles {
             document.scene.change_meshes(|mesh| {
                 let mut source = mesh.source.clone();
                 if let MeshSource::File {
                     triangles, problem, ..
                 } = &mut source
                 {
-                    (*triangles, *problem) = (Arc::clone(&read), None);
+                    (*triangles, *problem) = (Arc::clone(&loaded), None);
                 }
                 Some(Mesh {
                     source,

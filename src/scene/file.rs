@@ -21,7 +21,7 @@ pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 /// Largest nesting depth of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
 /// Largest number of characters of a line that an error shows: files of a single line stay readable.
-const EXCERPT: usize = 64;
+const MAX_EXCERPT: usize = 64;
 
 /// A scene and the comment header of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +81,7 @@ pub struct Refusal {
     pub column: usize,
     /// What is wrong and what was expected, as a sentence without its full stop.
     pub sentence: String,
-    /// The line around the column, at most [`EXCERPT`] characters.
+    /// The line around the column, at most [`MAX_EXCERPT`] characters.
     excerpt: String,
     /// Characters of the excerpt before the caret.
     indent: usize,
@@ -147,8 +147,8 @@ impl Document {
         let stamp = Stamp::of(&bytes, modified);
         let name = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
-            let good = error.utf8_error().valid_up_to();
-            let start = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
+            let valid_length = error.utf8_error().valid_up_to();
+            let start = String::from_utf8_lossy(&error.as_bytes()[..valid_length]).into_owned();
             refuse(
                 &name,
                 &start,
@@ -180,26 +180,26 @@ impl Document {
             return Err(refuse_problem(name, text, problem));
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
-            let found = offset_of(text, error.span.start.line, error.span.start.col);
+            let offset = offset_of(text, error.span.start.line, error.span.start.col);
             // At the end of the last line, the parser's position is one character too early.
-            if !text[found..].contains('\n')
+            if !text[offset..].contains('\n')
                 && !text.ends_with(char::is_whitespace)
                 && let Err(error) = Self::parse(name, &format!("{text}\n"))
             {
                 return error;
             }
             // The parser stops inside a comment at the end of the file.
-            let is_bare = text[header(text).len()..].trim().is_empty();
+            let is_empty = text[header(text).len()..].trim().is_empty();
             let at = match &error.code {
-                _ if is_bare => text.trim_end().len(),
+                _ if is_empty => text.trim_end().len(),
                 // The parser's position is after the sign of a number that must not have one.
-                ron::Error::IntegerOutOfBounds if text[..found].ends_with('-') => found - 1,
-                _ => found,
+                ron::Error::IntegerOutOfBounds if text[..offset].ends_with('-') => offset - 1,
+                _ => offset,
             };
             let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
             let is_end = text[at..].trim().is_empty() && error.code != ron::Error::Eof;
-            let ends = if is_end { "the file ends here; " } else { "" };
-            refuse(name, text, at, format!("{ends}{sentence}"))
+            let prefix = if is_end { "the file ends here; " } else { "" };
+            refuse(name, text, at, format!("{prefix}{sentence}"))
         })?;
         match check(&scene) {
             Ok(()) => Ok(Self {
@@ -239,17 +239,17 @@ impl Document {
     /// # Errors
     /// [`SceneError`], also if the text is too long to be read again; the file at `path` is then unchanged.
     pub fn save(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
-        self.at(path).save_stamped(path).map(|(backup, _)| backup)
+        self.for_path(path).save_stamped(path).map(|(copy, _)| copy)
     }
 
     /// Returns the document as it is saved at `path`: meshes whose files are not in that folder become inline, and
     /// mesh files that could not be read before are looked for there.
     #[must_use]
-    pub fn at(&self, path: &Path) -> Self {
+    pub fn for_path(&self, path: &Path) -> Self {
         let folder = &folder_of(path);
         Self {
             header: self.header.clone(),
-            scene: self.scene.taken_to(folder).looking_in(folder),
+            scene: self.scene.inlined_for(folder).reloaded_from(folder),
         }
     }
 
@@ -269,24 +269,24 @@ impl Document {
         })
     }
 
-    /// Like [`Self::save`], for a document that [`Self::at`] returned for this path. Also returns the new stamp.
+    /// Like [`Self::save`], for a document that [`Self::for_path`] returned for this path. Also returns the new stamp.
     ///
     /// # Errors
     /// See [`Self::save`].
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
         let text = self.to_text()?;
         Self::check_length(path, &text)?;
-        let disk = |source| SceneError::Disk {
+        let disk_error = |source| SceneError::Disk {
             verb: "write",
             path: path.to_owned(),
             source,
         };
-        let there = read_file(path).ok();
-        let there = there.and_then(|bytes| String::from_utf8(bytes).ok());
-        let loses_comments = there.is_some_and(|text| self.loses_comments_of(&text));
+        let existing = read_file(path).ok();
+        let existing = existing.and_then(|bytes| String::from_utf8(bytes).ok());
+        let loses_comments = existing.is_some_and(|text| self.loses_comments_of(&text));
         let backup = loses_comments.then(|| back_up(path)).transpose();
-        let backup = backup.map_err(disk)?;
-        write_atomic(path, text.as_bytes()).map_err(disk)?;
+        let backup = backup.map_err(disk_error)?;
+        write_atomic(path, text.as_bytes()).map_err(disk_error)?;
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
     }
 
@@ -295,8 +295,8 @@ impl Document {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let header = header(text);
         let plain = |text: &str| text.replace('\r', "").trim().to_owned();
-        let own = plain(header);
-        !own.is_empty() && own != plain(&self.header) || has_inner_comments(text)
+        let own_header = plain(header);
+        !own_header.is_empty() && own_header != plain(&self.header) || has_inner_comments(text)
     }
 }
 
@@ -383,12 +383,12 @@ fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
     let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
     let before: Vec<char> = text[start..at].chars().collect();
     let after = text[at..].chars().take_while(|&c| c != '\n' && c != '\r');
-    let indent = before.len().min(EXCERPT / 2);
+    let indent = before.len().min(MAX_EXCERPT / 2);
     let shown = before[before.len() - indent..]
         .iter()
         .copied()
         .chain(after)
-        .take(EXCERPT);
+        .take(MAX_EXCERPT);
     SceneError::Refused(Refusal {
         name: name.to_owned(),
         line: text[..at].matches('\n').count() + 1,

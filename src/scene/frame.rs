@@ -11,7 +11,7 @@ use super::whole::Scene;
 const MAX_SIZE_RATIO: f64 = 1e3;
 
 /// Number of objects that are examined, evenly spread over the list, if there are more.
-const LOOKED_AT: usize = 1000;
+const MAX_SAMPLED: usize = 1000;
 
 /// The origin and extent of the main part of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,17 +34,19 @@ impl CoordinateFrame {
         let half = half.max_element();
         let visible = scene.visible_objects();
         let mut boxes: Vec<_> = visible.filter_map(|object| object.shape.bounds()).collect();
-        let step = boxes.len().div_ceil(LOOKED_AT);
+        let step = boxes.len().div_ceil(MAX_SAMPLED);
         boxes = boxes.into_iter().step_by(step).collect();
-        let places = boxes.iter().map(|(low, high)| *low * 0.5 + *high * 0.5);
-        let lights = scene.lights.iter().take(LOOKED_AT);
-        let places: Vec<_> = places.chain(lights.map(|light| light.position)).collect();
-        let median_along = |axis: usize| median(places.iter().map(|place| place[axis]));
+        let positions = boxes.iter().map(|(low, high)| *low * 0.5 + *high * 0.5);
+        let lights = scene.lights.iter().take(MAX_SAMPLED);
+        let positions: Vec<_> = positions
+            .chain(lights.map(|light| light.position))
+            .collect();
+        let median_along = |axis: usize| median(positions.iter().map(|position| position[axis]));
         let centre = DVec3::new(median_along(0)?, median_along(1)?, median_along(2)?);
         let reach =
             |(low, high): &(DVec3, DVec3)| (*high - centre).max(centre - *low).max_element();
-        let near = MAX_SIZE_RATIO * median(boxes.iter().map(reach))?;
-        Some(if half <= near {
+        let near_extent = MAX_SIZE_RATIO * median(boxes.iter().map(reach))?;
+        Some(if half <= near_extent {
             Self {
                 centre: middle,
                 farthest: half,
@@ -54,7 +56,7 @@ impl CoordinateFrame {
             Self {
                 centre,
                 farthest: half + (centre - middle).abs().max_element(),
-                extent: near,
+                extent: near_extent,
             }
         })
     }
@@ -93,7 +95,7 @@ mod tests {
         }
         // Hidden objects do not thin out those that are examined.
         let frame = CoordinateFrame::of(&scene);
-        for number in 0..20 * LOOKED_AT {
+        for number in 0..20 * MAX_SAMPLED {
             let ball = Sphere {
                 center: DVec3::ZERO,
                 radius: 1.0,

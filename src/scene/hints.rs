@@ -11,10 +11,10 @@ use super::shape::Shape;
 use super::whole::Scene;
 
 /// Largest number of pairs of an object and a light that are examined.
-const MOST_LIT: usize = 20_000;
+const MOST_LIGHT_PAIRS: usize = 20_000;
 
 /// Tolerance within which a light counts as on a surface, as a share of the relevant distances.
-const ON: f64 = 1e-9;
+const ON_SURFACE: f64 = 1e-9;
 /// Height of the eye above a plane, as a share of the scene's extent, below which the plane is seen edge-on. In
 /// orthographic projection, the same limit applies to the cosine between view direction and normal.
 const EDGE_ON: f64 = 1e-6;
@@ -27,7 +27,7 @@ pub struct Hint {
     /// The affected part of the scene.
     pub about: About,
     /// Whether the object is a duplicate of another one, so that one of them can be hidden.
-    pub is_twice: bool,
+    pub is_duplicate: bool,
 }
 
 /// The part of the scene that a hint is about; lists are indexed.
@@ -46,11 +46,11 @@ pub enum About {
 }
 
 impl Hint {
-    fn new(words: String, about: About, is_twice: bool) -> Self {
+    fn new(words: String, about: About, is_duplicate: bool) -> Self {
         Self {
             words,
             about,
-            is_twice,
+            is_duplicate,
         }
     }
 }
@@ -58,14 +58,14 @@ impl Hint {
 /// Returns all hints about a scene.
 pub fn hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = camera_hints(scene);
-    hints.extend(thing_hints(scene));
+    hints.extend(scene_hints(scene));
     hints
 }
 
 /// Returns the hints about the position of the camera.
 pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
+    let mut add = |words, about, is_duplicate| hints.push(Hint::new(words, about, is_duplicate));
     let extent = CoordinateFrame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let eye = scene.camera.position;
     for (index, object) in visible(scene) {
@@ -88,13 +88,13 @@ fn visible(scene: &Scene) -> impl Iterator<Item = (usize, &Object)> {
 }
 
 /// Returns all other hints, which do not depend on the camera.
-pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
+pub fn scene_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let mut add = |words, about, is_twice| hints.push(Hint::new(words, about, is_twice));
-    let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIT;
+    let mut add = |words, about, is_duplicate| hints.push(Hint::new(words, about, is_duplicate));
+    let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIGHT_PAIRS;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
-        let is_on_show = light.visible && light.intensity > 0.0;
-        for (_, object) in visible(scene).filter(|_| is_on_show) {
+        let is_shining = light.visible && light.intensity > 0.0;
+        for (_, object) in visible(scene).filter(|_| is_shining) {
             let name = &object.name;
             if is_on(&object.shape, light.position) {
                 let words = format!("{} is on the surface of {name}", light.name);
@@ -105,11 +105,11 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
             }
         }
     }
-    let worn = scene.used_packs();
+    let used_packs = scene.used_packs();
     // In an empty scene, the first object added will use a color pack.
     let packs = scene.color_packs.iter().enumerate();
     for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {
-        if !worn.contains(name.as_str()) {
+        if !used_packs.contains(name.as_str()) {
             let words = format!("No object uses {name}");
             add(words, About::Pack(index), false);
         }
@@ -138,16 +138,16 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
             continue; // There is a hint about this object already.
         }
         let (object, other) = (&scene.objects[later], &scene.objects[earlier]);
-        let is_twice = object.shape == other.shape || both_endless(&object.shape, &other.shape);
+        let is_duplicate = object.shape == other.shape || both_endless(&object.shape, &other.shape);
         let (name, other) = (&object.name, &other.name);
-        let words = if is_twice {
+        let words = if is_duplicate {
             format!("{name} is in the same place as {other}")
         } else if extent == Overlap::Faces {
             format!("{name} shares faces with {other}, which comes first and is shown there")
         } else {
             format!("{name} lies in the surface of {other}, which comes first and is shown there")
         };
-        add(words, About::Object(later), is_twice);
+        add(words, About::Object(later), is_duplicate);
     }
 }
 
@@ -157,20 +157,22 @@ fn both_endless(one: &Shape, other: &Shape) -> bool {
 
 fn is_inside(shape: &Shape, point: DVec3) -> bool {
     match shape {
-        Shape::Sphere(ball) => ball.center.distance(point) < ball.radius * (1.0 - ON),
+        Shape::Sphere(ball) => ball.center.distance(point) < ball.radius * (1.0 - ON_SURFACE),
         _ => false,
     }
 }
 
 fn is_on(shape: &Shape, point: DVec3) -> bool {
-    let on_plane = |at: DVec3, normal: DVec3| {
-        let off = (point - at).dot(unit(normal).unwrap_or_default()).abs();
-        off <= ON * (point.length() + at.length())
+    let on_plane = |plane_point: DVec3, normal: DVec3| {
+        let distance = (point - plane_point)
+            .dot(unit(normal).unwrap_or_default())
+            .abs();
+        distance <= ON_SURFACE * (point.length() + plane_point.length())
     };
     match shape {
         Shape::Sphere(ball) => {
-            let off = (ball.center.distance(point) - ball.radius).abs();
-            off <= ON * (ball.radius + point.length())
+            let distance = (ball.center.distance(point) - ball.radius).abs();
+            distance <= ON_SURFACE * (ball.radius + point.length())
         }
         Shape::Plane(plane) => on_plane(plane.point, plane.normal),
         Shape::Disc(disc) => {

@@ -18,7 +18,7 @@ use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
 type PacksOfParts = HashMap<String, Vec<(ColorPack, String)>>;
 
 /// Name of the color pack of parts without colours.
-const PLAIN: &str = "mesh";
+const PLAIN_PACK: &str = "mesh";
 
 impl Scene {
     /// Creates a scene of a mesh file, with everything in view and lit from two sides. If the file has a single
@@ -36,14 +36,14 @@ impl Scene {
         scene.lights = List::new();
         let file = read_mesh_file(path)?;
         scene.add_parts(file.parts);
-        let near = folder.and_then(|folder| path.strip_prefix(folder).ok());
-        if let (Some(near), 1) = (near.and_then(reference_to), scene.objects.len())
+        let relative = folder.and_then(|folder| path.strip_prefix(folder).ok());
+        if let (Some(relative), 1) = (relative.and_then(reference_to), scene.objects.len())
             && let Some(object) = scene.objects.get_mut(0)
             && let Shape::Mesh(mesh) = &mut object.shape
         {
             // The mesh keeps the coordinates of the file, which are not centred.
             let mut linked = Mesh {
-                source: MeshSource::unread(near),
+                source: MeshSource::unread(relative),
                 position: DVec3::ZERO,
                 ..mesh.clone()
             };
@@ -68,7 +68,7 @@ impl Scene {
                 name, triangles, ..
             } = part;
             self.objects.push(Object::new(
-                names.take(&tidy(&name)),
+                names.take(&valid_name(&name)),
                 color_pack,
                 Mesh::of(triangles).centred(),
             ));
@@ -83,18 +83,18 @@ impl Scene {
         (packs, names): (&mut PacksOfParts, &mut Names),
     ) -> String {
         let (wanted, pack) = match colors {
-            None => (PLAIN.to_owned(), plain_pack()),
-            Some(colors) => (tidy(&colors.name), color_pack(colors)),
+            None => (PLAIN_PACK.to_owned(), plain_pack()),
+            Some(colors) => (valid_name(&colors.name), color_pack(colors)),
         };
         if self.color_packs.get(&wanted) == Some(&pack) {
             return wanted;
         }
-        let given = packs.entry(wanted.clone()).or_default();
-        if let Some((_, name)) = given.iter().find(|(other, _)| *other == pack) {
+        let created = packs.entry(wanted.clone()).or_default();
+        if let Some((_, name)) = created.iter().find(|(other, _)| *other == pack) {
             return name.clone();
         }
         let name = names.take(&wanted);
-        given.push((pack.clone(), name.clone()));
+        created.push((pack.clone(), name.clone()));
         self.packs_mut().insert(name.clone(), pack);
         name
     }
@@ -105,10 +105,10 @@ impl Scene {
             return;
         };
         let (middle, size) = (low * 0.5 + high * 0.5, (high - low).length());
-        let from = DVec3::new(0.35, 0.3, 1.0).normalize();
+        let view_side = DVec3::new(0.35, 0.3, 1.0).normalize();
         self.camera = Camera {
-            position: middle + from * size * 1.3,
-            look_at: -from,
+            position: middle + view_side * size * 1.3,
+            look_at: -view_side,
             up: DVec3::Y,
             projection_distance: 1.0,
             orthographic_height: size,
@@ -162,10 +162,10 @@ fn color_pack(colors: &PartColors) -> ColorPack {
 }
 
 /// Returns a valid name for a scene.
-fn tidy(name: &str) -> String {
+fn valid_name(name: &str) -> String {
     let plain: String = name.chars().filter(|c| !c.is_control()).take(100).collect();
     let plain = plain.trim();
-    if plain.is_empty() { PLAIN } else { plain }.to_owned()
+    if plain.is_empty() { PLAIN_PACK } else { plain }.to_owned()
 }
 
 #[cfg(test)]

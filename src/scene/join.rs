@@ -12,7 +12,7 @@ use super::names::Names;
 use super::object::Object;
 use super::shape::{Mesh, Shape, Triangle};
 use super::whole::Scene;
-use crate::mesh::{Triangles, place_key};
+use crate::mesh::{Triangles, position_key};
 
 /// Largest number of faces of a mesh that can be separated: each becomes an object with a name.
 pub const MOST_SEPARATE: usize = 10_000;
@@ -29,7 +29,7 @@ impl Scene {
     /// empty if that object is not a triangle.
     pub fn connected_triangles(&self, index: usize) -> Vec<usize> {
         let corners = |object: &Object| match &object.shape {
-            Shape::Triangle(triangle) => Some(triangle.corners().map(place_key)),
+            Shape::Triangle(triangle) => Some(triangle.corners().map(position_key)),
             _ => None,
         };
         let mut users: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
@@ -38,7 +38,7 @@ impl Scene {
                 users.entry(corner).or_default().push(user);
             }
         }
-        let is_seen = |object: usize| self.objects.get(object).map(|object| object.visible);
+        let visibility = |object: usize| self.objects.get(object).map(|object| object.visible);
         let mut found = vec![false; self.objects.len()];
         let mut waiting = vec![index];
         while let Some(object) = waiting.pop() {
@@ -54,7 +54,7 @@ impl Scene {
                     .filter_map(|corner| users.remove(corner))
                     .flatten()
                     // Hidden triangles are not connected to visible ones.
-                    .filter(|&other| is_seen(other) == is_seen(index)),
+                    .filter(|&other| visibility(other) == visibility(index)),
             );
         }
         (0..found.len()).filter(|&object| found[object]).collect()
@@ -66,7 +66,7 @@ impl Scene {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
         let mut number = |point: DVec3| {
-            *numbers.entry(place_key(point)).or_insert_with(|| {
+            *numbers.entry(position_key(point)).or_insert_with(|| {
                 points.push(point);
                 points.len() as u32 - 1
             })
@@ -87,63 +87,63 @@ impl Scene {
             smooth,
             ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
         };
-        let gone = joined[1..].to_vec();
+        let removed = joined[1..].to_vec();
         // If all members of the group are joined, the mesh is in no group.
         let group = &self.objects[first].group;
-        let is_in_it = |object: &&Object| object.group == *group;
-        let members = self.objects.iter().filter(is_in_it).count();
+        let is_in_group = |object: &&Object| object.group == *group;
+        let members = self.objects.iter().filter(is_in_group).count();
         let own = joined.iter().filter_map(|&index| self.objects.get(index));
-        let group = if own.filter(is_in_it).count() < members {
+        let group = if own.filter(is_in_group).count() < members {
             group.clone()
         } else {
             String::new()
         };
         let mut own = joined.iter().filter_map(|&index| self.objects.get(index));
-        let is_seen = own.any(|object| object.visible);
-        let mut rest = joined.into_iter().peekable();
+        let is_visible = own.any(|object| object.visible);
+        let mut remaining = joined.into_iter().peekable();
         let objects = self
             .objects
             .iter()
             .enumerate()
             .filter_map(|(index, object)| {
-                if rest.next_if_eq(&index).is_none() {
+                if remaining.next_if_eq(&index).is_none() {
                     return Some(object.clone());
                 }
                 (index == first).then(|| Object {
                     shape: mesh.clone().into(),
                     group: group.clone(),
-                    visible: is_seen,
+                    visible: is_visible,
                     ..object.clone()
                 })
             });
         let objects = objects.collect::<List<_>>();
         let before = std::mem::replace(&mut self.objects, objects);
-        let gone = gone.iter().map(|&index| &before[index]);
-        self.keep_tracks_of(&before[first], mesh.position, gone);
+        let removed = removed.iter().map(|&index| &before[index]);
+        self.keep_tracks_of(&before[first], mesh.position, removed);
         Some(first)
     }
 
     /// Keeps the position tracks of `object` for the mesh at `position` that took over its name, shifted
-    /// accordingly. Removes its rotation tracks, and all tracks of the objects in `gone`.
+    /// accordingly. Removes its rotation tracks, and all tracks of the objects in `removed`.
     fn keep_tracks_of<'a>(
         &mut self,
         object: &Object,
         position: DVec3,
-        gone: impl Iterator<Item = &'a Object>,
+        removed: impl Iterator<Item = &'a Object>,
     ) {
         if self.animation.tracks.is_empty() {
             return;
         }
         let animation = Arc::make_mut(&mut self.animation);
-        animation.forget(&gone.map(|object| Owner::Object(&object.name)).collect());
+        animation.forget(&removed.map(|object| Owner::Object(&object.name)).collect());
         let turns = Target::ObjectRotation(object.name.clone());
         animation.tracks.retain(|track| track.target != turns);
         let moves = Target::ObjectPosition(object.name.clone());
-        let further = position - object.shape.position();
+        let offset = position - object.shape.position();
         let tracks = animation.tracks.iter_mut();
         tracks
             .filter(|track| track.target == moves)
-            .for_each(|track| track.shift(further));
+            .for_each(|track| track.shift(offset));
     }
 
     /// Replaces the mesh at `index`, if it is separable, by its triangles; if it is in no group, they form one
@@ -156,8 +156,8 @@ impl Scene {
         if !mesh.is_separable() {
             return 0..0;
         }
-        let is_lone = mesh.source.triangles().faces().len() == 1;
-        let group = if object.group.is_empty() && !is_lone {
+        let is_single = mesh.source.triangles().faces().len() == 1;
+        let group = if object.group.is_empty() && !is_single {
             let groups = self.objects.iter().map(|object| object.group.as_str());
             Names::new(groups).take(&object.name)
         } else {
@@ -183,7 +183,7 @@ impl Scene {
         if pieces.is_empty() {
             return 0..0;
         }
-        let places = index..index + pieces.len();
+        let new_indices = index..index + pieces.len();
         let before = self.objects.iter().take(index).cloned();
         let after = self.objects.iter().skip(index + 1).cloned();
         self.objects = before.chain(pieces).chain(after).collect::<List<_>>();
@@ -193,15 +193,15 @@ impl Scene {
         if self.animation.tracks.iter().any(is_moved) {
             Arc::make_mut(&mut self.animation).forget(&HashSet::from([own]));
         }
-        places
+        new_indices
     }
 }
 
 /// Returns the corners of each face in world space, clockwise seen from outside.
 fn outer_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
-    let is_mirrored = mesh.turn().determinant() < 0.0;
-    let turned = move |[a, b, c]: [DVec3; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
-    mesh.world_corners().map(turned)
+    let is_mirrored = mesh.linear_transform().determinant() < 0.0;
+    let outward = move |[a, b, c]: [DVec3; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+    mesh.world_corners().map(outward)
 }
 
 #[cfg(test)]

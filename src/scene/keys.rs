@@ -10,7 +10,7 @@ use super::animation::{
 use super::camera::Camera;
 
 /// Share of a frame below which the distance of two keys counts as zero.
-const SAME: f64 = 0.25;
+const SAME_TIME_IN_FRAMES: f64 = 0.25;
 
 /// Identifies a key of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,20 +35,20 @@ impl KeyPlace {
 
 impl Animation {
     fn is_same_time(&self, a: f64, b: f64) -> bool {
-        (a - b).abs() < SAME / self.frames_per_second
+        (a - b).abs() < SAME_TIME_IN_FRAMES / self.frames_per_second
     }
 
     /// Returns the index of the key that counts as being at this time, the nearest if there are several. Keys of a
     /// recorded flight are between frames, whereas the playhead is on one.
-    fn place_at<T>(&self, keys: &[Key<T>], time: f64) -> Option<usize> {
-        let off = |index: &usize| (keys[*index].time - time).abs();
+    fn index_at<T>(&self, keys: &[Key<T>], time: f64) -> Option<usize> {
+        let distance = |index: &usize| (keys[*index].time - time).abs();
         let near = (0..keys.len()).filter(|&index| self.is_near(keys[index].time, time));
-        near.min_by(|a, b| off(a).total_cmp(&off(b)))
+        near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
     /// Returns the index of the camera key at this time, if any.
     pub fn key_at(&self, time: f64) -> Option<usize> {
-        self.place_at(&self.keys, time)
+        self.index_at(&self.keys, time)
     }
 
     /// Returns whether a key that is moved from one time to another replaces the key at `other`, because it is near
@@ -66,14 +66,14 @@ impl Animation {
     /// Returns the animation with a camera key at this time, which replaces an existing one, and the key's index.
     pub fn with_key(&self, time: f64, camera: Camera) -> (Self, usize) {
         let mut animation = self.clone();
-        let index = put(&mut animation.keys, self.key_at(time), (time, camera));
+        let index = put_key(&mut animation.keys, self.key_at(time), (time, camera));
         (animation, index)
     }
 
     /// Returns all keys, those of the camera first.
     pub fn places(&self) -> Keys {
         let tracks = self.tracks.iter().enumerate();
-        let rows = tracks.map(|(track, own)| (Some(track), own.keys.len()));
+        let rows = tracks.map(|(track, row)| (Some(track), row.keys.len()));
         std::iter::once((None, self.keys.len()))
             .chain(rows)
             .flat_map(|(track, count)| (0..count).map(move |index| KeyPlace { track, index }))
@@ -113,8 +113,8 @@ impl Animation {
     pub fn without_keys(&self, places: &Keys) -> Self {
         let mut animation = self.clone();
         retain_others(&mut animation.keys, None, places);
-        for (track, own) in animation.tracks.iter_mut().enumerate() {
-            retain_others(&mut own.keys, Some(track), places);
+        for (track, row) in animation.tracks.iter_mut().enumerate() {
+            retain_others(&mut row.keys, Some(track), places);
         }
         animation.tracks.retain(|track| !track.keys.is_empty());
         animation
@@ -127,22 +127,25 @@ impl Animation {
         spans.reduce(|(first, last), (time, _)| (time.min(first), time.max(last)))
     }
 
-    /// Returns the animation with these keys, or copies of them, moved by `later` seconds, and their new places.
+    /// Returns the animation with these keys, or copies of them, moved by `shift` seconds, and their new places.
     /// The shift is limited so that none is before the start or after [`MAX_SECONDS`]. Each moved key replaces the
     /// one it lands on.
-    pub fn with_moved(&self, places: &Keys, later: f64, are_copies: bool) -> (Self, Keys) {
+    pub fn with_moved(&self, places: &Keys, shift: f64, are_copies: bool) -> (Self, Keys) {
         let (first, last) = self.span_of(places).unwrap_or((0.0, MAX_SECONDS));
-        let way = (later.clamp(-first, MAX_SECONDS - last), are_copies);
+        let movement = (shift.clamp(-first, MAX_SECONDS - last), are_copies);
         let (mut animation, mut new) = (self.clone(), Keys::new());
-        let mut note = |track, indices: Vec<usize>| {
+        let mut record = |track, indices: Vec<usize>| {
             let place = |index| KeyPlace { track, index };
             new.extend(indices.into_iter().map(place));
         };
         let moved = indices(places, None);
-        note(None, move_row(self, &mut animation.keys, &moved, way));
-        for (track, own) in animation.tracks.iter_mut().enumerate() {
+        record(None, move_keys(self, &mut animation.keys, &moved, movement));
+        for (track, row) in animation.tracks.iter_mut().enumerate() {
             let moved = indices(places, Some(track));
-            note(Some(track), move_row(self, &mut own.keys, &moved, way));
+            record(
+                Some(track),
+                move_keys(self, &mut row.keys, &moved, movement),
+            );
         }
         (animation, new)
     }
@@ -174,7 +177,7 @@ impl Animation {
 
     /// Returns the key of a track at this time, if any.
     pub fn value_at(&self, track: usize, time: f64) -> Option<KeyPlace> {
-        let index = self.place_at(&self.tracks.get(track)?.keys, time)?;
+        let index = self.index_at(&self.tracks.get(track)?.keys, time)?;
         let track = Some(track);
         Some(KeyPlace { track, index })
     }
@@ -221,12 +224,12 @@ impl Animation {
 
     /// Adds a key to a track, or replaces an existing one at this time.
     pub fn put_value(&mut self, track: usize, key: (f64, Value)) {
-        let there = self.place_at(&self.tracks[track].keys, key.0);
-        put(&mut self.tracks[track].keys, there, key);
+        let existing = self.index_at(&self.tracks[track].keys, key.0);
+        put_key(&mut self.tracks[track].keys, existing, key);
     }
 
     /// Renames the light or object that tracks refer to.
-    pub fn follow_name(&mut self, owner: Owner, to: &str) {
+    pub fn rename_owner(&mut self, owner: Owner, to: &str) {
         let tracks = self.tracks.iter_mut();
         for track in tracks.filter(|track| track.target.owner() == Some(owner)) {
             track.target = track.target.renamed(to);
@@ -266,19 +269,19 @@ impl Track {
     }
 }
 
-/// Sets the value at a time, either of the existing key `there` or of a new one. Returns its index. A new key takes
-/// the interpolation of the key before it, so that a cut stays a cut and an orbit continues.
-fn put<T>(keys: &mut Vec<Key<T>>, there: Option<usize>, (time, value): (f64, T)) -> usize {
-    if let Some(there) = there {
-        keys[there].value = value;
+/// Sets the value at a time, either of the key at the index `existing` or of a new one. Returns its index. A new key
+/// takes the interpolation of the key before it, so that a cut stays a cut and an orbit continues.
+fn put_key<T>(keys: &mut Vec<Key<T>>, existing: Option<usize>, (time, value): (f64, T)) -> usize {
+    if let Some(existing) = existing {
+        keys[existing].value = value;
         let is_behind = |before: &Key<T>| before.time + SAME_TIME < time;
         let is_before = |next: &Key<T>| time + SAME_TIME < next.time;
-        let (before, others) = keys.split_at_mut(there);
+        let (before, others) = keys.split_at_mut(existing);
         // Moves the key to exactly this time, so that the value is exact there.
         if before.last().is_none_or(is_behind) && others.get(1).is_none_or(is_before) {
             others[0].time = time;
         }
-        return there;
+        return existing;
     }
     let at = keys.partition_point(|key| key.time < time);
     let mut key = Key::new(time, value);
@@ -315,17 +318,17 @@ fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, places: &Keys)
     });
 }
 
-/// Moves the keys at `indices` (ascending), or copies of them, by `later` seconds. Returns their new indices.
-fn move_row<T: Clone>(
+/// Moves the keys at `indices` (ascending), or copies of them, by `shift` seconds. Returns their new indices.
+fn move_keys<T: Clone>(
     animation: &Animation,
     keys: &mut Vec<Key<T>>,
     indices: &[usize],
-    (later, are_copies): (f64, bool),
+    (shift, are_copies): (f64, bool),
 ) -> Vec<usize> {
     let moved = indices.iter().filter_map(|&index| keys.get(index));
     let moved: Vec<Key<T>> = moved
         .map(|key| Key {
-            time: key.time + later,
+            time: key.time + shift,
             ..key.clone()
         })
         .collect();
@@ -342,13 +345,14 @@ fn move_row<T: Clone>(
         let from = if are_copies {
             f64::INFINITY
         } else {
-            key.time - later
+            key.time - shift
         };
-        let off = |other: &usize| (others[*other].time - key.time).abs();
+        let distance = |other: &usize| (others[*other].time - key.time).abs();
         let first = others.partition_point(|other| other.time < key.time - near);
-        let close = (first..others.len()).take_while(|other| off(other) <= near);
-        let close = close.filter(|&other| animation.replaces((from, key.time), others[other].time));
-        close.min_by(|a, b| off(a).total_cmp(&off(b)))
+        let nearby = (first..others.len()).take_while(|other| distance(other) <= near);
+        let nearby =
+            nearby.filter(|&other| animation.replaces((from, key.time), others[other].time));
+        nearby.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     };
     let replaced: HashSet<usize> = moved.iter().filter_map(replaced).collect();
     let others = others.iter().enumerate();

@@ -9,10 +9,10 @@ use serde::de::{Deserialize, Deserializer};
 use serde::ser::{Serialize, Serializer};
 
 /// Largest number of items in a chunk, which is copied when any of them changes.
-const MOST: usize = 128;
+const MAX_CHUNK: usize = 128;
 
 /// Estimated number of bytes of text that an item refers to.
-const TEXT: usize = 32;
+const ITEM_TEXT_BYTES: usize = 32;
 
 /// A list of scene items with structural sharing.
 #[derive(Clone, Debug)]
@@ -106,32 +106,32 @@ impl<T: Clone> List<T> {
     /// If `index` is too large.
     pub fn insert(&mut self, index: usize, item: T) {
         assert!(index <= self.len(), "no place {index} in the list");
-        let Some(at) = self.chunk_of(index) else {
+        let Some(chunk_index) = self.chunk_of(index) else {
             *self = std::iter::once(item).collect();
             return;
         };
         let chunks = Arc::make_mut(&mut self.chunks);
-        let chunk = &mut chunks[at];
+        let chunk = &mut chunks[chunk_index];
         let items = Arc::make_mut(&mut chunk.items);
         items.insert(index - chunk.start, item);
-        if items.len() > MOST {
+        if items.len() > MAX_CHUNK {
             // Filling a list by appending leaves full chunks.
             let half = if index + 1 == chunk.start + items.len() {
-                MOST
+                MAX_CHUNK
             } else {
-                MOST / 2
+                MAX_CHUNK / 2
             };
             let second = Arc::new(items.split_off(half));
             let start = chunk.start + half;
             chunks.insert(
-                at + 1,
+                chunk_index + 1,
                 Chunk {
                     start,
                     items: second,
                 },
             );
         }
-        renumber(chunks, at);
+        renumber(chunks, chunk_index);
     }
 
     /// Removes and returns the item at `index`.
@@ -140,15 +140,15 @@ impl<T: Clone> List<T> {
     /// If `index` is out of range.
     pub fn remove(&mut self, index: usize) -> T {
         assert!(index < self.len(), "no item {index} in the list");
-        let at = self.chunk_of(index).unwrap_or_default();
+        let chunk_index = self.chunk_of(index).unwrap_or_default();
         let chunks = Arc::make_mut(&mut self.chunks);
-        let chunk = &mut chunks[at];
+        let chunk = &mut chunks[chunk_index];
         let items = Arc::make_mut(&mut chunk.items);
         let item = items.remove(index - chunk.start);
         if items.is_empty() {
-            chunks.remove(at);
+            chunks.remove(chunk_index);
         }
-        renumber(chunks, at.saturating_sub(1));
+        renumber(chunks, chunk_index.saturating_sub(1));
         item
     }
 
@@ -172,7 +172,7 @@ impl<T: Clone> List<T> {
     }
 
     /// Estimates how many bytes of this list are not shared with another one.
-    pub fn bytes_apart(&self, other: &Self) -> usize {
+    pub fn unshared_bytes(&self, other: &Self) -> usize {
         let address = |chunk: &Chunk<T>| Arc::as_ptr(&chunk.items);
         let shared: HashSet<_> = other.chunks.iter().map(address).collect();
         let own = self.chunks.iter();
@@ -183,7 +183,7 @@ impl<T: Clone> List<T> {
         } else {
             self.chunks.len()
         };
-        items * (size_of::<T>() + TEXT) + table * size_of::<Chunk<T>>()
+        items * (size_of::<T>() + ITEM_TEXT_BYTES) + table * size_of::<Chunk<T>>()
     }
 
     /// Returns the items that may differ from those of `other` at the same index, with their indices; `None` if the
@@ -279,7 +279,7 @@ impl<T: Clone> FromIterator<T> for List<T> {
         let mut chunks = Vec::new();
         let mut start = 0;
         loop {
-            let chunk: Vec<T> = items.by_ref().take(MOST).collect();
+            let chunk: Vec<T> = items.by_ref().take(MAX_CHUNK).collect();
             let count = chunk.len();
             if count == 0 {
                 break;
@@ -359,13 +359,13 @@ mod tests {
     fn a_step_of_undo_weighs_what_it_changed() {
         let before: List<u32> = (0..100_000).collect();
         let mut after = before.clone();
-        assert_eq!(after.bytes_apart(&before), 0);
+        assert_eq!(after.unshared_bytes(&before), 0);
         after.insert(50, 1);
         after.remove(77_777);
-        let changed = 3 * MOST * (size_of::<u32>() + TEXT);
+        let changed = 3 * MAX_CHUNK * (size_of::<u32>() + ITEM_TEXT_BYTES);
         let table = after.chunks.len() * size_of::<Chunk<u32>>();
-        assert!(after.bytes_apart(&before) <= changed + table);
-        assert!(after.bytes_apart(&before) > table);
+        assert!(after.unshared_bytes(&before) <= changed + table);
+        assert!(after.unshared_bytes(&before) > table);
     }
 
     #[test]
@@ -374,7 +374,7 @@ mod tests {
         let mut after = before.clone();
         *after.get_mut(77_777).expect("an item") = 0;
         let changes = after.changes(&before).expect("laid out alike");
-        assert!(changes.len() <= MOST && changes.contains(&(77_777, &0)));
+        assert!(changes.len() <= MAX_CHUNK && changes.contains(&(77_777, &0)));
         let shared = after.chunks.iter().zip(before.chunks.iter());
         let copied = shared.filter(|(a, b)| !Arc::ptr_eq(&a.items, &b.items));
         assert_eq!(copied.count(), 1);

@@ -33,11 +33,11 @@ pub fn locate(text: &str, path: &[PathStep]) -> usize {
 pub fn claimed_version(text: &str) -> Option<u32> {
     let mut cursor = Cursor { text, at: 0 };
     cursor.skip_preamble();
-    let is_there = cursor.enter(&PathStep::Field("version"));
+    let has_version = cursor.enter(&PathStep::Field("version"));
     let digits = text[cursor.at..]
         .split(|c: char| !c.is_ascii_digit())
         .next()?;
-    u32::from_str(digits).ok().filter(|_| is_there)
+    u32::from_str(digits).ok().filter(|_| has_version)
 }
 
 /// Returns whether the top-level value of the text has a field of this name.

@@ -18,13 +18,13 @@ const MOST_BOXES: usize = 4_000_000;
 const MOST_PAIRS: usize = 2_000_000;
 
 /// Largest number of faces of a mesh that is tested for being a solid: takes a few milliseconds.
-const MOST_OF_SOLID: usize = 20_000;
+const MOST_SOLID_FACES: usize = 20_000;
 
 /// Largest number of face corners that are compared with infinite planes: takes some ten milliseconds.
 const MOST_CORNERS: usize = 6_000_000;
 
 /// Margin by which a bounding box is widened, as a share of its size.
-const LITTLE: f64 = 1e-6;
+const BOX_MARGIN: f64 = 1e-6;
 
 /// Two visible objects, by index, that share a surface in part or entirely.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,12 +55,12 @@ pub enum Overlap {
 /// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
-    let mut ended: Vec<BoxedSurface> = visible
+    let mut bounded: Vec<BoxedSurface> = visible
         .filter(|(_, object)| object.visible)
         .filter_map(|(index, object)| BoxedSurface::of(index, object))
         .collect();
-    let endless: Vec<_> = ended.extract_if(.., |one| one.bounds.is_none()).collect();
-    ended.sort_by(|one, other| one.start().total_cmp(&other.start()));
+    let endless: Vec<_> = bounded.extract_if(.., |one| one.bounds.is_none()).collect();
+    bounded.sort_by(|one, other| one.start().total_cmp(&other.start()));
     let mut found = Vec::new();
     let mut add = |one: &BoxedSurface, other: &BoxedSurface, extent: Overlap| {
         found.push(Coincidence {
@@ -70,7 +70,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         });
     };
     let mut corners = MOST_CORNERS;
-    for one in &ended {
+    for one in &bounded {
         let Shape::Mesh(mesh) = one.shape else {
             continue;
         };
@@ -88,20 +88,20 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         pairs: MOST_PAIRS,
         pairs_of_sides: MOST_PAIRS,
     };
-    let all: Vec<&BoxedSurface> = ended.iter().collect();
-    let meshes: Vec<&BoxedSurface> = ended.iter().filter(|one| one.is_mesh()).collect();
-    let (mut seen, mut boxes) = (0, MOST_BOXES);
-    for (place, one) in ended.iter().enumerate() {
-        seen += usize::from(one.is_mesh());
+    let all: Vec<&BoxedSurface> = bounded.iter().collect();
+    let meshes: Vec<&BoxedSurface> = bounded.iter().filter(|one| one.is_mesh()).collect();
+    let (mut meshes_seen, mut boxes) = (0, MOST_BOXES);
+    for (rank, one) in bounded.iter().enumerate() {
+        meshes_seen += usize::from(one.is_mesh());
         // Pairs without a mesh are found elsewhere, and there may be very many of them.
         let others = if one.is_mesh() {
-            &all[place + 1..]
+            &all[rank + 1..]
         } else {
-            &meshes[seen..]
+            &meshes[meshes_seen..]
         };
         let end = one.bounds.map_or(0.0, |(_, high)| high.x);
         let near = others.iter().take_while(|other| other.start() <= end);
-        for other in near.take_while(|_| counts_down(&mut boxes)) {
+        for other in near.take_while(|_| try_spend(&mut boxes)) {
             if let Some(extent) = search.extent(one, other) {
                 add(one, other, extent);
             }
@@ -116,7 +116,7 @@ struct BoxedSurface<'a> {
     shape: &'a Shape,
     bounds: Option<(DVec3, DVec3)>,
     /// Cached result of [`Self::normal_orientation`]: many objects may touch one.
-    side: OnceCell<Option<f64>>,
+    orientation: OnceCell<Option<f64>>,
 }
 
 impl<'a> BoxedSurface<'a> {
@@ -132,7 +132,7 @@ impl<'a> BoxedSurface<'a> {
             index,
             shape,
             bounds,
-            side: OnceCell::new(),
+            orientation: OnceCell::new(),
         })
     }
 
@@ -143,15 +143,15 @@ impl<'a> BoxedSurface<'a> {
     /// Returns whether the normals of the faces point outwards (1) or inwards (-1); `None` if the object is not a
     /// solid, or has too many faces to test.
     fn normal_orientation(&self) -> Option<f64> {
-        *self.side.get_or_init(|| self.find_outer_side())
+        *self.orientation.get_or_init(|| self.find_orientation())
     }
 
-    fn find_outer_side(&self) -> Option<f64> {
+    fn find_orientation(&self) -> Option<f64> {
         let Shape::Mesh(mesh) = self.shape else {
             return None;
         };
         let triangles = mesh.source.triangles();
-        if triangles.faces().len() > MOST_OF_SOLID || !are_closed(triangles.corners()) {
+        if triangles.faces().len() > MOST_SOLID_FACES || !are_closed(triangles.corners()) {
             return None;
         }
         let from = mesh.position;
@@ -178,36 +178,36 @@ impl<'a> BoxedSurface<'a> {
             };
             let [a, b, c] = corners;
             let around = widened(Triangle { a, b, c }.bounds()?);
-            meet(around, within).then_some((piece, around))
+            boxes_overlap(around, within).then_some((piece, around))
         };
         mesh.pieces().filter_map(boxed).collect()
     }
 }
 
 /// Decrements a budget, and returns whether any of it was left.
-pub fn counts_down(left: &mut usize) -> bool {
-    let is_left = *left > 0;
-    *left = left.saturating_sub(1);
-    is_left
+pub fn try_spend(budget: &mut usize) -> bool {
+    let was_left = *budget > 0;
+    *budget = budget.saturating_sub(1);
+    was_left
 }
 
 /// Returns a slightly larger box: the bounding boxes of flat objects may have no height.
 pub fn widened((low, high): (DVec3, DVec3)) -> (DVec3, DVec3) {
-    let little = DVec3::splat(LITTLE * (high - low).max_element());
-    (low - little, high + little)
+    let margin = DVec3::splat(BOX_MARGIN * (high - low).max_element());
+    (low - margin, high + margin)
 }
 
 /// Returns whether two boxes overlap or touch.
-pub fn meet(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
+pub fn boxes_overlap(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
     one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
 }
 
 /// Returns how a mesh coincides with an infinite plane; `None` if no face is in the plane, or if the budget of
-/// corners in `left` does not suffice.
+/// corners in `budget` does not suffice.
 fn on_plane(
     mesh: &Mesh,
     plane: &PlanePiece,
-    (centre, left): (DVec3, &mut usize),
+    (centre, budget): (DVec3, &mut usize),
 ) -> Option<Overlap> {
     let triangles = mesh.source.triangles();
     let transform = mesh.transform();
@@ -218,35 +218,35 @@ fn on_plane(
     };
     let (low, high) = triangles.bounds()?;
     let corners = (0..8).map(|corner| {
-        let way = [0, 1, 2].map(|axis| f64::from(corner >> axis & 1));
-        transform.transform_point3(low + (high - low) * DVec3::from(way))
+        let side = [0, 1, 2].map(|axis| f64::from(corner >> axis & 1));
+        transform.transform_point3(low + (high - low) * DVec3::from(side))
     });
     let reach = corners.map(|corner| (corner - centre).abs().max_element());
-    let little = plane.plane_tolerance(centre, reach.fold(0.0, f64::max));
+    let tolerance = plane.plane_tolerance(centre, reach.fold(0.0, f64::max));
     // Extent of the box to each side of its middle, along the plane's normal.
     let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
     let across = (transform.matrix3.transpose() * plane.normal)
         .abs()
         .dot(half);
-    if height(middle).abs() > across + little {
+    if height(middle).abs() > across + tolerance {
         return None;
     }
-    *left = left.checked_sub(3 * triangles.faces().len())?;
+    *budget = budget.checked_sub(3 * triangles.faces().len())?;
     let heights: Vec<f64> = triangles
         .points()
         .iter()
         .map(|&point| height(point))
         .collect();
-    let is_on = |corner: &u32| heights[*corner as usize].abs() <= little;
+    let is_on = |corner: &u32| heights[*corner as usize].abs() <= tolerance;
     let is_in = |face: &[u32; 3]| face.iter().all(is_on);
     let faces = triangles.faces().iter().zip(triangles.corners());
-    let mut lying = faces.filter(|(face, _)| is_in(face));
-    lying.find(|(_, corners)| PlanePiece::between(*corners).is_some())?;
+    let mut in_plane = faces.filter(|(face, _)| is_in(face));
+    in_plane.find(|(_, corners)| PlanePiece::between(*corners).is_some())?;
     let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let is_beside = -little <= lowest || highest <= little;
-    let is_flat = highest - lowest <= 2.0 * little;
-    Some(if is_beside && !is_flat {
+    let is_on_one_side = -tolerance <= lowest || highest <= tolerance;
+    let is_flat = highest - lowest <= 2.0 * tolerance;
+    Some(if is_on_one_side && !is_flat {
         Overlap::Standing
     } else {
         Overlap::Faces
@@ -269,33 +269,33 @@ impl Search {
     /// Returns how two bounded objects share a plane; `None` if they do not, or if the budget does not suffice.
     fn extent(&mut self, one: &BoxedSurface, other: &BoxedSurface) -> Option<Overlap> {
         let (around, other_around) = (one.bounds?, other.bounds?);
-        if !meet(around, other_around) {
+        if !boxes_overlap(around, other_around) {
             return None;
         }
-        let faces = |placed: &BoxedSurface| match placed.shape {
+        let faces = |surface: &BoxedSurface| match surface.shape {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
             _ => 1,
         };
         self.faces = self.faces.checked_sub(faces(one) + faces(other))?;
         let within = (around.0.max(other_around.0), around.1.min(other_around.1));
-        let pieces = [one, other].map(|placed| {
-            let mut pieces = placed.pieces_in(within);
+        let pieces = [one, other].map(|surface| {
+            let mut pieces = surface.pieces_in(within);
             pieces.sort_by(|a, b| a.1.0.x.total_cmp(&b.1.0.x));
             pieces
         });
-        if !self.either(&pieces, &|_| true) {
+        if !self.any_pair(&pieces, &|_| true) {
             return None;
         }
         // If no pair is found here, all have been examined. This has its own budget, so as not to use up that of
         // other objects.
         std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
         let sides = one.normal_orientation().zip(other.normal_orientation());
-        let are_apart = sides.is_some_and(|(side, other)| {
-            let is_one_way = |cosine: f64| cosine * side * other > 0.0;
-            !self.either(&pieces, &is_one_way) && self.pairs > 0
+        let are_touching = sides.is_some_and(|(side, other)| {
+            let face_alike = |cosine: f64| cosine * side * other > 0.0;
+            !self.any_pair(&pieces, &face_alike) && self.pairs > 0
         });
         std::mem::swap(&mut self.pairs, &mut self.pairs_of_sides);
-        Some(if are_apart {
+        Some(if are_touching {
             Overlap::Touching
         } else {
             Overlap::Faces
@@ -303,7 +303,11 @@ impl Search {
     }
 
     /// Returns whether any piece of one object coincides with one of the other, see [`Self::any`].
-    fn either(&mut self, [one, other]: &[Vec<Boxed>; 2], is_wanted: &dyn Fn(f64) -> bool) -> bool {
+    fn any_pair(
+        &mut self,
+        [one, other]: &[Vec<Boxed>; 2],
+        is_wanted: &dyn Fn(f64) -> bool,
+    ) -> bool {
         self.any(one, other, is_wanted) || self.any(other, one, is_wanted)
     }
 
@@ -315,8 +319,8 @@ impl Search {
             let others = others[from..].iter();
             let mut near = others.take_while(|(_, other)| other.0.x <= around.1.x);
             near.any(|(other, other_around)| {
-                counts_down(&mut self.pairs)
-                    && meet(*around, *other_around)
+                try_spend(&mut self.pairs)
+                    && boxes_overlap(*around, *other_around)
                     && is_wanted(piece.normal.dot(other.normal))
                     && piece.coincides(other, self.centre)
             })
@@ -425,7 +429,10 @@ mod tests {
             |other: DVec3| found(sheet(7, 50.0, at, turned), sheet(11, 30.0, other, turned));
         assert_eq!(sheets(at), Some(Overlap::Faces));
         let one = sheet(7, 50.0, at, turned);
-        let (across, along) = (one.turn() * DVec3::Y, one.turn() * DVec3::X);
+        let (across, along) = (
+            one.linear_transform() * DVec3::Y,
+            one.linear_transform() * DVec3::X,
+        );
         assert_eq!(sheets(at + across * 1e-3), None);
         assert_eq!(sheets(at + along * 39.9), Some(Overlap::Faces));
         assert_eq!(sheets(at + along * 40.1), None, "beside it");

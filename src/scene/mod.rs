@@ -81,7 +81,7 @@ pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
 pub use file::{DEMO_TEXT, Document, SceneError, read_text};
 pub use frame::CoordinateFrame;
-pub use hints::{About, Hint, camera_hints, hints, thing_hints};
+pub use hints::{About, Hint, camera_hints, hints, scene_hints};
 pub use join::MOST_SEPARATE;
 pub use keys::{KeyPlace, Keys};
 pub use list::List;

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 /// Largest number of characters of a name.
 pub const MAX_NAME: usize = 200;
 /// Characters reserved for a number at the end of a name.
-const NUMBER: usize = 20;
+const NUMBER_CHARS: usize = 20;
 
 /// A set of names that are taken.
 #[derive(Debug)]
@@ -33,7 +33,7 @@ impl Names {
         // Leaves room for the number, so that the result is at most `MAX_NAME` characters long.
         let base: String = without_number(wanted)
             .chars()
-            .take(MAX_NAME - NUMBER)
+            .take(MAX_NAME - NUMBER_CHARS)
             .collect();
         let next = self.next.entry(base.clone()).or_insert(2);
         loop {

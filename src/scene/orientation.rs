@@ -27,14 +27,14 @@ impl Orientation {
         let Some(basis) = camera.basis() else {
             return Self::default();
         };
-        let (u, v, look) = (basis.x_axis, basis.y_axis, -basis.z_axis);
-        let level = look.x.hypot(look.z);
-        let pitch = look.y.atan2(level);
-        if level > 1e-9 {
+        let (u, v, forward) = (basis.x_axis, basis.y_axis, -basis.z_axis);
+        let horizontal = forward.x.hypot(forward.z);
+        let pitch = forward.y.atan2(horizontal);
+        if horizontal > 1e-9 {
             // Without yaw and pitch, u and v differ from the axes by the roll alone.
-            let yaw = look.x.atan2(-look.z);
-            let flat = DVec3::new(yaw.cos(), 0.0, yaw.sin());
-            let roll = (-flat.dot(v)).atan2(flat.dot(u));
+            let yaw = forward.x.atan2(-forward.z);
+            let level_right = DVec3::new(yaw.cos(), 0.0, yaw.sin());
+            let roll = (-level_right.dot(v)).atan2(level_right.dot(u));
             return Self {
                 yaw,
                 pitch,
@@ -52,7 +52,7 @@ impl Orientation {
     /// Returns the viewing direction and the up vector: perpendicular unit vectors.
     pub fn vectors(self) -> (DVec3, DVec3) {
         let Self { yaw, pitch, roll } = self;
-        let look = DVec3::new(
+        let forward = DVec3::new(
             yaw.sin() * pitch.cos(),
             pitch.sin(),
             -yaw.cos() * pitch.cos(),
@@ -63,7 +63,7 @@ impl Orientation {
             yaw.cos() * pitch.sin(),
         );
         let right = DVec3::new(yaw.cos(), 0.0, yaw.sin());
-        (look, level_up * roll.cos() + right * roll.sin())
+        (forward, level_up * roll.cos() + right * roll.sin())
     }
 
     /// Returns the camera with these angles instead of its own.

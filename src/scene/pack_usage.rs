@@ -13,17 +13,17 @@ impl Scene {
         objects.chain(markers).collect()
     }
 
-    /// Replaces the color pack of every object and marker for which `instead` returns a name.
-    pub fn replace_packs<'a>(&mut self, instead: impl Fn(&str) -> Option<&'a str>) {
+    /// Replaces the color pack of every object and marker for which `replacement` returns a name.
+    pub fn replace_packs<'a>(&mut self, replacement: impl Fn(&str) -> Option<&'a str>) {
         // Element by element: unchanged elements stay shared with earlier undo states.
         for index in 0..self.objects.len() {
-            if let Some(name) = instead(&self.objects[index].color_pack) {
+            if let Some(name) = replacement(&self.objects[index].color_pack) {
                 name.clone_into(&mut self.objects[index].color_pack);
             }
         }
         for index in 0..self.lights.len() {
             let marker = self.lights[index].marker.as_ref();
-            let name = marker.and_then(|marker| instead(&marker.color_pack));
+            let name = marker.and_then(|marker| replacement(&marker.color_pack));
             if let Some(name) = name
                 && let Some(marker) = &mut self.lights[index].marker
             {
@@ -50,19 +50,19 @@ impl Scene {
 
     /// Removes every color pack that is equal to an earlier one, which replaces it.
     pub fn merge_equal_packs(&mut self) {
-        let mut kept = HashMap::new();
-        let mut instead = HashMap::new();
+        let mut first_names = HashMap::new();
+        let mut replacements = HashMap::new();
         for (name, pack) in self.color_packs.iter() {
-            let first = *kept.entry(pack.key()).or_insert(name);
+            let first = *first_names.entry(pack.key()).or_insert(name);
             if first != name {
-                instead.insert(name.clone(), first.clone());
+                replacements.insert(name.clone(), first.clone());
             }
         }
-        if instead.is_empty() {
+        if replacements.is_empty() {
             return;
         }
         self.packs_mut()
-            .retain(|name, _| !instead.contains_key(name));
-        self.replace_packs(|name| instead.get(name).map(String::as_str));
+            .retain(|name, _| !replacements.contains_key(name));
+        self.replace_packs(|name| replacements.get(name).map(String::as_str));
     }
 }

@@ -3,7 +3,7 @@
 use ron::Error;
 
 /// Returns a hint for a number that follows `before`: a comma after digits may be meant as a decimal point.
-fn hint_of_decimals(before: &str) -> &'static str {
+fn decimals_hint(before: &str) -> &'static str {
     let number = before.trim_end().strip_suffix(',');
     if number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit())) {
         ": decimals are written after a point"
@@ -23,7 +23,7 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
             "expected the closing bracket: there is one number too many".to_owned()
         }
         Error::SuggestRawIdentifier(name) if name.starts_with(is_of_number) => {
-            let hint = hint_of_decimals(before);
+            let hint = decimals_hint(before);
             format!("expected the name of a field, found {name}{hint}")
         }
         // The parser has read the digits before the decimal point as an integer.

@@ -9,13 +9,13 @@ use super::file::Document;
 use crate::files::{Stamp, is_same_file, write_atomic};
 
 /// Start of the first line of a recovery file, followed by the path of the document.
-const MARK: &str = "// unsaved changes of: ";
+const PATH_MARK: &str = "// unsaved changes of: ";
 
 /// Start of the second line, if the document's file has been read or written, followed by the hash of its contents.
 const BASE_MARK: &str = "// of the file that was: ";
 
 /// Prefix of the names of recovery files.
-const NAME: &str = "unsaved-";
+const FILE_PREFIX: &str = "unsaved-";
 
 /// The recovery file of this program.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl Recovery {
         fs::create_dir_all(folder)?;
         let mut number = std::process::id();
         loop {
-            let path = folder.join(format!("{NAME}{number}.ron"));
+            let path = folder.join(format!("{FILE_PREFIX}{number}.ron"));
             let lock_path = path.with_extension("lock");
             let lock = File::create(&lock_path)?;
             match lock.try_lock() {
@@ -79,7 +79,10 @@ impl Recovery {
         let base = stamp.map_or(String::new(), |stamp| {
             format!("{BASE_MARK}{}\n", stamp.hash())
         });
-        write_atomic(&self.path, format!("{MARK}{name}\n{base}{text}").as_bytes())
+        write_atomic(
+            &self.path,
+            format!("{PATH_MARK}{name}\n{base}{text}").as_bytes(),
+        )
     }
 
     /// Removes the recovery file: there are no unsaved changes (any more).
@@ -88,21 +91,21 @@ impl Recovery {
         let _ = fs::remove_file(&self.path);
     }
 
-    /// Takes one recovery file that an ended program left in the folder, for the document at `of` or for any. It
+    /// Takes one recovery file that an ended program left in the folder, for the document at `wanted` or for any. It
     /// replaces this program's own recovery file.
-    pub fn take_leftover(&self, of: Option<&Path>) -> Option<Leftover> {
+    pub fn take_leftover(&self, wanted: Option<&Path>) -> Option<Leftover> {
         let entries = fs::read_dir(self.path.parent()?).ok()?;
         let files = entries.filter_map(|entry| Some(entry.ok()?.path()));
         // A file that was being written when its program was killed has a different name; the previous version is
         // used.
-        let is_other = |path: &PathBuf| {
+        let is_leftover = |path: &PathBuf| {
             let name = path.file_name().map(|name| name.to_string_lossy());
-            name.is_some_and(|name| name.starts_with(NAME) && name.ends_with(".ron"))
+            name.is_some_and(|name| name.starts_with(FILE_PREFIX) && name.ends_with(".ron"))
                 && *path != self.path
         };
         files
-            .filter(is_other)
-            .find_map(|path| take(&path, of, &self.path))
+            .filter(is_leftover)
+            .find_map(|path| take_over(&path, wanted, &self.path))
     }
 }
 
@@ -112,30 +115,30 @@ impl Drop for Recovery {
     }
 }
 
-fn take(path: &Path, of: Option<&Path>, to: &Path) -> Option<Leftover> {
+fn take_over(path: &Path, wanted: Option<&Path>, target: &Path) -> Option<Leftover> {
     let lock_path = path.with_extension("lock");
     let lock = File::create(&lock_path).ok()?;
     lock.try_lock().ok()?;
     let text = fs::read_to_string(path).ok()?;
-    let (first, body) = text.strip_prefix(MARK)?.split_once('\n')?;
-    let escaped: Option<String> = serde_json::from_str(first).ok();
-    let first = escaped.as_deref().unwrap_or(first);
-    if of.is_some_and(|of| !is_same_file(of, Path::new(first))) {
+    let (original, body) = text.strip_prefix(PATH_MARK)?.split_once('\n')?;
+    let escaped: Option<String> = serde_json::from_str(original).ok();
+    let original = escaped.as_deref().unwrap_or(original);
+    if wanted.is_some_and(|wanted| !is_same_file(wanted, Path::new(original))) {
         return None;
     }
     let (base, body) = match body.strip_prefix(BASE_MARK) {
         Some(rest) => rest.split_once('\n')?,
         None => ("", body),
     };
-    let stamp = Stamp::of_hash(base, Path::new(first));
+    let stamp = Stamp::of_hash(base, Path::new(original));
     let mut document = Document::from_text(body).ok()?;
     // A file that cannot be renamed is not taken: it would be found again and again.
-    fs::rename(path, to).ok()?;
+    fs::rename(path, target).ok()?;
     let _ = fs::remove_file(&lock_path);
-    document.scene.load_meshes(Path::new(first).parent());
+    document.scene.load_meshes(Path::new(original).parent());
     Some(Leftover {
         document,
-        path: (!first.is_empty()).then(|| PathBuf::from(first)),
+        path: (!original.is_empty()).then(|| PathBuf::from(original)),
         stamp,
     })
 }

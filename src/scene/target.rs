@@ -84,8 +84,8 @@ impl<'a> Owners<'a> {
             };
         }
         Self {
-            lights: places(lights, scene.lights.iter().map(|light| &*light.name)),
-            objects: places(objects, scene.objects.iter().map(|object| &*object.name)),
+            lights: indices_by_name(lights, scene.lights.iter().map(|light| &*light.name)),
+            objects: indices_by_name(objects, scene.objects.iter().map(|object| &*object.name)),
         }
     }
 
@@ -111,18 +111,18 @@ impl<'a> Owners<'a> {
 }
 
 /// Returns the index of the first occurrence of each wanted name.
-fn places<'a, 's>(
+fn indices_by_name<'a, 's>(
     mut wanted: HashSet<&'a str>,
     names: impl Iterator<Item = &'s str>,
 ) -> HashMap<&'a str, usize> {
-    let mut places = HashMap::with_capacity(wanted.len());
+    let mut indices_by_name = HashMap::with_capacity(wanted.len());
     for (index, name) in names.enumerate() {
         if wanted.is_empty() {
             break;
         }
         if let Some(name) = wanted.take(name) {
-            places.insert(name, index);
+            indices_by_name.insert(name, index);
         }
     }
-    places
+    indices_by_name
 }

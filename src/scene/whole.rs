@@ -128,7 +128,7 @@ impl Scene {
     }
 
     /// Estimates how many bytes of this scene are not shared with another one.
-    pub fn bytes_apart(&self, other: &Self) -> usize {
+    pub fn unshared_bytes(&self, other: &Self) -> usize {
         let packs = if self.color_packs.is_same(&other.color_packs) {
             0
         } else {
@@ -140,7 +140,7 @@ impl Scene {
             self.animation.bytes()
         };
         let lists =
-            self.objects.bytes_apart(&other.objects) + self.lights.bytes_apart(&other.lights);
+            self.objects.unshared_bytes(&other.objects) + self.lights.unshared_bytes(&other.lights);
         size_of::<Self>() + packs + animation + lists
     }
 
@@ -172,28 +172,28 @@ impl Scene {
 
     /// Returns the scene for saving in `folder`: meshes whose files are missing or in another folder become inline.
     #[must_use]
-    pub fn taken_to(&self, folder: &Path) -> Self {
-        let gone = self.gone_mesh_files();
+    pub fn inlined_for(&self, folder: &Path) -> Self {
+        let missing = self.gone_mesh_files();
         let references = self.mesh_sources().filter_map(MeshSource::reference);
-        let mut elsewhere: BTreeSet<&Path> = references.map(|(own, _)| own).collect();
+        let mut elsewhere: BTreeSet<&Path> = references.map(|(own_folder, _)| own_folder).collect();
         // The same folder can be spelled in several ways.
-        elsewhere.retain(|own| !is_same_file(own, folder));
+        elsewhere.retain(|own_folder| !is_same_file(own_folder, folder));
         self.with_sources(|source| {
-            let (own, path) = source.file()?;
-            let is_lost = gone.contains(path) || elsewhere.contains(own);
-            is_lost.then(|| source.inlined()).flatten()
+            let (own_folder, path) = source.file()?;
+            let is_unavailable = missing.contains(path) || elsewhere.contains(own_folder);
+            is_unavailable.then(|| source.inlined()).flatten()
         })
     }
 
     /// Returns the scene for saving in `folder`: mesh files that could not be read in another folder are looked for
     /// there.
     #[must_use]
-    pub fn looking_in(&self, folder: &Path) -> Self {
+    pub fn reloaded_from(&self, folder: &Path) -> Self {
         let files = RefCell::new(MeshFiles::new());
         self.with_sources(|source| {
             source.problem()?;
-            let own = source.reference().map(|(own, _)| own);
-            if own.is_some_and(|own| is_same_file(own, folder)) {
+            let own_folder = source.reference().map(|(own_folder, _)| own_folder);
+            if own_folder.is_some_and(|own_folder| is_same_file(own_folder, folder)) {
                 return None;
             }
             let mut new = source.clone();
@@ -212,10 +212,10 @@ impl Scene {
     /// if several meshes refer to it.
     pub fn gone_mesh_files(&self) -> BTreeSet<&str> {
         let files: BTreeSet<_> = self.mesh_sources().filter_map(MeshSource::file).collect();
-        let gone = files
+        let missing = files
             .into_iter()
             .filter(|(folder, path)| !folder.join(path).exists());
-        gone.map(|(_, path)| path).collect()
+        missing.map(|(_, path)| path).collect()
     }
 
     /// Returns the scene with all meshes inline that were read from one of these files.
@@ -223,8 +223,8 @@ impl Scene {
     pub fn without_files(&self, files: &BTreeSet<PathBuf>) -> Self {
         self.with_sources(|source| {
             let (folder, path) = source.file()?;
-            let is_meant = files.contains(&folder.join(path));
-            is_meant.then(|| source.inlined()).flatten()
+            let is_listed = files.contains(&folder.join(path));
+            is_listed.then(|| source.inlined()).flatten()
         })
     }
 
@@ -233,10 +233,10 @@ impl Scene {
         if files.is_empty() {
             return BTreeSet::new();
         }
-        let shown = self.mesh_sources().filter_map(MeshSource::file);
-        let shown: HashSet<_> = shown.collect();
-        let shown = shown.into_iter();
-        let found = shown.filter_map(|(folder, path)| files.get(&folder.join(path)));
+        let sources = self.mesh_sources().filter_map(MeshSource::file);
+        let sources: HashSet<_> = sources.collect();
+        let sources = sources.into_iter();
+        let found = sources.filter_map(|(folder, path)| files.get(&folder.join(path)));
         found.map(PathBuf::as_path).collect()
     }
 
@@ -259,8 +259,8 @@ impl Scene {
             let is_loss = read.problem().is_some() && source.problem().is_none();
             (read != source && !is_loss).then(|| read.clone())
         };
-        let is_other = self.mesh_sources().any(|source| new(source).is_some());
-        is_other.then(|| self.with_sources(new))
+        let has_changes = self.mesh_sources().any(|source| new(source).is_some());
+        has_changes.then(|| self.with_sources(new))
     }
 
     fn mesh_sources(&self) -> impl Iterator<Item = &MeshSource> {

@@ -120,7 +120,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         if let Some(retracer) = self.retracer.filter(|_| is_anything_seen) {
             self.retrace(retracer, samples, edges, traced);
         }
-        if self.kernel.plan.show == Show::Again {
+        if self.kernel.plan.show == Show::Retraced {
             let indices = &self.work.retraced.indices;
             traced.mark(if is_anything_seen { indices } else { &[] });
         }

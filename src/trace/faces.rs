@@ -56,9 +56,9 @@ pub fn note_faces<L: SimdFloat>(
 fn has_faces<R: Real>(plan: &Plan<R>) -> bool {
     let in_geometry = |geometry: &Geometry<R>| {
         let mut meshes = geometry.meshes.iter();
-        !geometry.primitives.things.is_empty() || meshes.any(|mesh| mesh.mesh.has_flat)
+        !geometry.primitives.components.is_empty() || meshes.any(|mesh| mesh.mesh.has_flat)
     };
-    !plan.primitives.things.is_empty() || plan.geometry.as_deref().is_some_and(in_geometry)
+    !plan.primitives.components.is_empty() || plan.geometry.as_deref().is_some_and(in_geometry)
 }
 
 /// A flat face, and the origin of its corners' coordinates.

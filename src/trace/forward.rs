@@ -380,7 +380,7 @@ impl<L: SimdFloat> Bounce<L> {
         kernel: Kernel<L, TREE>,
         samples: &Samples<L::Real>,
     ) {
-        if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
+        if TREE && kernel.plan.hit_order == HitOrder::ByPosition {
             let packets = (&mut self.packets[..], &mut self.uncertainties[..]);
             self.order.regroup_hits(kernel, packets, samples);
         }

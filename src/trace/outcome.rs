@@ -20,7 +20,7 @@ pub fn signatures_of<L: SimdFloat>(
     edge.lit.store(&mut lit);
     let mut signatures = [0; MAX_LANES];
     // Separate loops: without calls, all lanes are computed in step.
-    if plan.geometry.is_none() && plan.primitives.things.is_empty() {
+    if plan.geometry.is_none() && plan.primitives.components.is_empty() {
         for lane in 0..L::WIDTH {
             let object = (numbers[lane] + L::Real::ONE).nearest();
             signatures[lane] = signature_of(object, lit[lane]);
@@ -74,12 +74,12 @@ fn component_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
         let index = number.checked_sub(first)?;
         let component = match geometry.mesh_of(index) {
-            Some(mesh) => mesh.first + mesh.mesh.thing_of(index - mesh.first),
-            None => geometry.primitives.thing_of(index),
+            Some(mesh) => mesh.first + mesh.mesh.component_of(index - mesh.first),
+            None => geometry.primitives.component_of(index),
         };
         Some(first + component)
     });
-    in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
+    in_tree.unwrap_or_else(|| plan.primitives.component_of(number))
 }
 
 /// Writes for each ray of a packet the shadows that its hit is in and that end near it. Most rays have none.

@@ -179,7 +179,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let kernel = self.kernel;
         match kernel.plan.show {
             Show::Mirrors if self.is_first => Some(Vec3::splat(kernel.splat(0.0))),
-            Show::Light | Show::Shadows(_) | Show::Mirrors | Show::Cost | Show::Again => None,
+            Show::Light | Show::Shadows(_) | Show::Mirrors | Show::Cost | Show::Retraced => None,
             Show::Normals => {
                 let normal = hit.surface.normal;
                 let half = kernel.splat(0.5);

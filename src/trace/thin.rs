@@ -34,8 +34,10 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
     /// mirrors make that more. The limits are multiples of the camera's own: rays with more than
     /// [`MAX_SPREAD_INTO_MESHES`] do not look into meshes, and rays to a light with more than [`MAX_SPREAD_TO_LIGHTS`]
-    /// look for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and
-    /// other rays above [`MAX_SPREAD_WHEN_CROWDED`].
+    /// look
+    /// for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and
+    /// other
+    /// rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -55,7 +57,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> L {
         let spread = self.plan.view.spread();
         let mesh_spread_limit = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
-        let spread_limit = match (self.plan.things < CROWDED_OBJECTS, query.is_to_light) {
+        let spread_limit = match (
+            self.plan.visible_objects < CROWDED_OBJECTS,
+            query.is_to_light,
+        ) {
             (true, true) => spread * L::Real::from_f64(MAX_SPREAD_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
             (false, true) => mesh_spread_limit,

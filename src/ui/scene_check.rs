@@ -9,7 +9,7 @@ use super::icons;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW, palette};
 use crate::editor::{Edit, Editor, Item, Selection};
-use crate::scene::{About, Hint, Scene, camera_hints, thing_hints};
+use crate::scene::{About, Hint, Scene, camera_hints, scene_hints};
 use crate::words::counted;
 
 /// Width of the list in points.
@@ -40,7 +40,7 @@ impl SceneCheck {
             let cached = self.scene_hints.take();
             // Finding coincident surfaces takes long, and does not depend on the camera.
             let cached = cached.filter(|(of, _)| of.has_same_things(scene));
-            let found = cached.map_or_else(|| thing_hints(scene), |(_, found)| found);
+            let found = cached.map_or_else(|| scene_hints(scene), |(_, found)| found);
             self.hints = camera_hints(scene);
             self.hints.extend_from_slice(&found);
             self.scene_hints = Some((Arc::clone(scene), found));
@@ -60,7 +60,7 @@ impl SceneCheck {
                 clipped * 100.0
             ),
             about: About::World,
-            is_twice: false,
+            is_duplicate: false,
         });
     }
 
@@ -116,7 +116,7 @@ fn selection_of(about: About) -> Selection {
 fn fix_for(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
     match hint.about {
         About::Pack(index) => Some(("Delete", Edit::Delete(vec![Item::pack(index)]))),
-        About::Object(index) if hint.is_twice => {
+        About::Object(index) if hint.is_duplicate => {
             Some(("Hide", Edit::visible(scene, Item::object(index), false)?))
         }
         _ => None,

@@ -232,7 +232,7 @@ fn what_looks_alike_in_one_place_casts_no_shadow_there() {
     let Shape::Mesh(mesh) = &sheet else {
         panic!("a mesh");
     };
-    let normal = mesh.turn() * DVec3::Y;
+    let normal = mesh.linear_transform() * DVec3::Y;
     let (center, radius) = (turned.0, 1.5);
     let disc = Disc {
         center,

@@ -21,7 +21,7 @@ fn turn() -> DMat3 {
     let Shape::Mesh(mesh) = leaning() else {
         unreachable!("a sheet is a mesh");
     };
-    Mesh::turn(&mesh)
+    Mesh::linear_transform(&mesh)
 }
 
 /// A sheet of 18 faces over the floor.

@@ -4,10 +4,10 @@ use crate::primitive::kind::SurfacePoint;
 use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Cosine between a face's normal and a mirrored ray to which a ray that would enter the face is raised.
-const LEAST_COSINE: f64 = 0.01;
+const MIN_COSINE: f64 = 0.01;
 
 /// Distance between the ends of unit normals up to which they count as equal, in any precision.
-const ALIKE: f64 = 1e-5;
+const MAX_NORMAL_DIFFERENCE: f64 = 1e-5;
 
 /// The normals of a face that is shaded as curved.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ impl<R: Real> CornerNormals<R> {
     /// Returns whether the normals are equal but for rounding, so that the face looks flat.
     pub fn are_alike(&self) -> bool {
         let [a, b, c] = self.normals;
-        (a - b).length().max((a - c).length()) < R::from_f64(ALIKE)
+        (a - b).length().max((a - c).length()) < R::from_f64(MAX_NORMAL_DIFFERENCE)
     }
 }
 
@@ -58,17 +58,19 @@ impl<L: SimdFloat> Curved<L> {
         let mut normal = Vec3::splat(zero);
         let mut lift = normal;
         for (index, weight) in weights.into_iter().enumerate() {
-            let own = self.normals[index];
-            let own = Vec3::select(is_away, -own, own);
+            let corner_normal = self.normals[index];
+            let corner_normal = Vec3::select(is_away, -corner_normal, corner_normal);
             // Onto the tangent plane of the corner if that is above; a concave surface stays flat.
-            let below = (flat.point - self.corners[index]).dot(own).min(zero);
-            normal = normal + own * weight;
-            lift = lift - own * (below * weight);
+            let below = (flat.point - self.corners[index])
+                .dot(corner_normal)
+                .min(zero);
+            normal = normal + corner_normal * weight;
+            lift = lift - corner_normal * (below * weight);
         }
         let normal = normal * (zero.like(L::Real::ONE) / normal.length());
         SurfacePoint {
             point: flat.point + lift + face * flat.slack,
-            normal: kept_out(normal, face, direction),
+            normal: keep_mirrored_outside(normal, face, direction),
             curvature: self.curvature,
             slack: zero,
             size: flat.size,
@@ -97,19 +99,23 @@ fn weights<L: SimdFloat>([a, b, c]: [Vec3<L>; 3], normal: Vec3<L>, point: Vec3<L
 
 /// Returns `normal`, adjusted where needed so that it mirrors rays to the side of the face that they come from.
 #[inline(always)]
-fn kept_out<L: SimdFloat>(normal: Vec3<L>, face: Vec3<L>, direction: Vec3<L>) -> Vec3<L> {
+fn keep_mirrored_outside<L: SimdFloat>(
+    normal: Vec3<L>,
+    face: Vec3<L>,
+    direction: Vec3<L>,
+) -> Vec3<L> {
     let along = direction.dot(normal);
     let mirrored = direction - normal * (along + along);
     let height = mirrored.dot(face);
     // Rays that graze the face may leave it as flatly as they came.
-    let come = -direction.dot(face);
-    let least = (come * come.like_f64(0.9)).min(come.like_f64(LEAST_COSINE));
-    let raised = mirrored + face * (least - height);
-    let raised = raised * (come.like(L::Real::ONE) / raised.length());
+    let incidence = -direction.dot(face);
+    let min_height = (incidence * incidence.like_f64(0.9)).min(incidence.like_f64(MIN_COSINE));
+    let raised = mirrored + face * (min_height - height);
+    let raised = raised * (incidence.like(L::Real::ONE) / raised.length());
     let between = raised - direction;
     let length = between.length();
-    let between = between * (come.like(L::Real::ONE) / length);
+    let between = between * (incidence.like(L::Real::ONE) / length);
     // A ray along the face is mirrored only by the face's own normal.
-    let between = Vec3::select(come.like(L::Real::ZERO).less(length), between, face);
-    Vec3::select(height.less(least), between, normal)
+    let between = Vec3::select(incidence.like(L::Real::ZERO).less(length), between, face);
+    Vec3::select(height.less(min_height), between, normal)
 }

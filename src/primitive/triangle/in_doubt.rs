@@ -30,27 +30,30 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     let width = blur.around((a[2] * shear.z).abs(), longest);
     let bound = width * longest * shear.z.abs() * u.like_f64(STEEPNESS);
     let (low, high) = (u.min(v).min(w), u.max(v).max(w));
-    let is_missed = low.less(-bound) & bound.less(high);
+    let is_surely_missed = low.less(-bound) & bound.less(high);
     let (zero, infinity) = (u.like(L::Real::ZERO), u.like(L::Real::INFINITY));
-    if !(wanted & !is_missed).any() {
+    if !(wanted & !is_surely_missed).any() {
         return None;
     }
-    let is_met = bound.less(low) | high.less(-bound);
+    let is_surely_hit = bound.less(low) | high.less(-bound);
     let t = shear.distance(corners, edges);
     let inside = zero.at_most(low) | high.at_most(zero);
     let distance = L::select(inside & zero.less(t), t, infinity);
     // For rays that run along the triangle, a small height is decisive over a long distance.
     let normal = ray.origin.like(triangle.normal);
     let height = t * normal.dot(ray.direction);
-    let starts_on_it = is_met & height.abs().at_most(blur.at(longest));
-    let from = L::select(starts_on_it, zero, infinity);
-    let passes_edge = wanted & !is_missed & !is_met;
+    let starts_on_it = is_surely_hit & height.abs().at_most(blur.at(longest));
+    let start_doubt = L::select(starts_on_it, zero, infinity);
+    let passes_edge = wanted & !is_surely_missed & !is_surely_hit;
     if !passes_edge.any() {
-        return Some((distance, from));
+        return Some((distance, start_doubt));
     }
     // The edges of a narrow triangle are uncertain far beyond its corners: only rays through the box around it
     // count.
     let around = BoundingBox::around(&triangle.corners);
     let entry = around.entry(ray, width);
-    Some((distance, L::select(passes_edge, entry.min(from), from)))
+    Some((
+        distance,
+        L::select(passes_edge, entry.min(start_doubt), start_doubt),
+    ))
 }

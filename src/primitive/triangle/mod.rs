@@ -14,7 +14,7 @@ pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::SHARES_PER_UNIT;
 pub use packed::{
-    Culling, PackedTriangle, Tip, Vertex, corner, count_corner_users, number_corners,
+    Culling, PackedTriangle, Tip, Vertex, corner_key, count_corner_users, number_corners,
 };
 use watertight::{Passing, Shear, watertight};
 
@@ -80,14 +80,14 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
         let Triangle { a, b, c } = *description;
         let normal = (c - a).cross(b - a).try_normalize()?;
-        let is_shared = |point: &DVec3| packing.corner_users.get(&corner(*point)) > Some(&1);
+        let is_shared = |point: &DVec3| packing.corner_users.get(&corner_key(*point)) > Some(&1);
         Some(Self {
             corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
             tip: Tip::Narrow,
-            culling: if packing.faces_of_solids.contains(&[a, b, c].map(corner)) {
+            culling: if packing.faces_of_solids.contains(&[a, b, c].map(corner_key)) {
                 Culling::Far
             } else {
                 Culling::Nothing
@@ -142,12 +142,12 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     fn blocking_width<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
         let thickness = zero.like(self.thickness);
-        let is_left = match self.culling {
+        let is_left_out = match self.culling {
             Culling::Nothing => return thickness,
             Culling::Lit => zero.less(directions.dot(directions.like(self.normal))),
             Culling::Far => directions.dot(directions.like(self.normal)).less(zero),
         };
-        L::select(is_left, zero, thickness)
+        L::select(is_left_out, zero, thickness)
     }
 
     fn reach(&self) -> (Vec3<R>, R) {
@@ -213,18 +213,18 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let c = shear.apply(rays.origin.like(c) - rays.origin);
         let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
         let mut size = t.like(self.thickness);
-        let mut least = t.like(Primitive::thickness(self));
+        let mut rough_size = t.like(Primitive::thickness(self));
         if let Tip::Round(corner, share) = self.tip {
-            let width = rays.beside(self.corners[corner as usize]);
+            let width = rays.distance_to(self.corners[corner as usize]);
             let share = f64::from(share) / SHARES_PER_UNIT;
             size = size.min(width * width.like_f64(share * WIDER_AT_TIPS));
-            least = size;
+            rough_size = size;
         }
         let rough = Approach {
             from: t.min(u).min(v),
             to: t.max(u).max(v),
-            distance: shear.least_beside([a, b, c]),
-            size: least,
+            distance: shear.min_distance([a, b, c]),
+            size: rough_size,
         };
         if !matters(&rough) {
             return None;
@@ -233,7 +233,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             inside,
             nearest,
             second,
-            at,
+            nearest_at,
         } = shear.passing([a, b, c]);
         if self.tip == Tip::Narrow {
             // Near one edge, the width there is about the extra distance to the next edge.
@@ -241,8 +241,8 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
             size = size.min(width * width.like_f64(WIDER_AT_TIPS));
         }
         Some(Approach {
-            from: at,
-            to: at,
+            from: nearest_at,
+            to: nearest_at,
             distance: L::select(inside, -nearest, nearest),
             size,
         })

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::mesh::place_key;
+use crate::mesh::position_key;
 use crate::primitive::kind::Corner;
 use crate::scene::{Scene, Shape, Triangle};
 use crate::simd::{Real, Vec3};
@@ -35,12 +35,12 @@ pub enum Tip {
 
 impl Tip {
     /// [`Self::Round`] for something whose width is `share` times the distance from the corner.
-    pub fn round(which: Vertex, share: f64) -> Self {
+    pub fn round(corner: Vertex, share: f64) -> Self {
         // With zero, it would be thin everywhere.
         let share = (share * SHARES_PER_UNIT)
             .ceil()
             .clamp(1.0, f64::from(u8::MAX));
-        Self::Round(which, share as u8)
+        Self::Round(corner, share as u8)
     }
 }
 
@@ -118,7 +118,7 @@ impl<R: Real> PackedTriangle<R> {
     }
 
     /// Turns it inside out.
-    pub fn turn(&mut self) {
+    pub fn flip(&mut self) {
         self.corners.swap(1, 2);
         self.normal = -self.normal;
         self.tip = match self.tip {
@@ -130,8 +130,8 @@ impl<R: Real> PackedTriangle<R> {
 }
 
 /// Converts a corner to a key: two corners are the same if their coordinates are equal.
-pub fn corner(point: DVec3) -> Corner {
-    place_key(point)
+pub fn corner_key(point: DVec3) -> Corner {
+    position_key(point)
 }
 
 /// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not
@@ -143,10 +143,10 @@ pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]>
     let step =
         (farthest.fold(0.0, f64::max) * 2.0 * f64::from(f32::UNIT_ROUNDOFF)).max(f64::MIN_POSITIVE);
     let mut numbers = HashMap::new();
-    let mut number = |place: Vec3<R>| {
+    let mut number = |position: Vec3<R>| {
         let next = numbers.len() as u32;
-        let place = (place.to_dvec3() / step).round();
-        *numbers.entry(corner(place)).or_insert(next)
+        let position = (position.to_dvec3() / step).round();
+        *numbers.entry(corner_key(position)).or_insert(next)
     };
     let corners = triangles.iter().map(|triangle| triangle.corners);
     corners.map(|corners| corners.map(&mut number)).collect()
@@ -158,7 +158,7 @@ pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
     for object in scene.visible_objects() {
         if let Shape::Triangle(triangle) = &object.shape {
             for point in triangle.corners() {
-                *users.entry(corner(point)).or_insert(0) += 1;
+                *users.entry(corner_key(point)).or_insert(0) += 1;
             }
         }
     }

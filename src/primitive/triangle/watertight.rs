@@ -6,7 +6,7 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Least ratio of a distance from the ray to the same distance in the sheared plane, which is at most as oblique as
 /// the diagonal of a cube: slightly less than 1/√3.
-const LEAST_ACROSS: f64 = 0.577;
+const MIN_SHEARED_RATIO: f64 = 0.577;
 
 /// Data that the watertight test derives from a ray once: the axis along which the direction is largest, which
 /// becomes z, and the shear that aligns the ray with it.
@@ -16,7 +16,7 @@ pub struct Shear<L: SimdFloat> {
     is_x: L::Mask,
     is_y: L::Mask,
     /// The major axis, if all lanes have the same.
-    common: Option<MajorAxis>,
+    common_axis: Option<MajorAxis>,
     /// Shift of x per unit of depth.
     pub x: L,
     y: L,
@@ -41,7 +41,7 @@ pub struct Passing<L: SimdFloat> {
     /// Distance to the second nearest edge.
     pub second: L,
     /// Distance along the rays to where they are nearest to the nearest edge.
-    pub at: L,
+    pub nearest_at: L,
 }
 
 impl<L: SimdFloat> Shear<L> {
@@ -55,19 +55,19 @@ impl<L: SimdFloat> Shear<L> {
         let mut shear = Self {
             is_x,
             is_y,
-            common: None,
+            common_axis: None,
             x: one,
             y: one,
             z: one,
         };
         let all = one.same(one).bits();
-        shear.common = match (is_x.bits(), is_y.bits()) {
+        shear.common_axis = match (is_x.bits(), is_y.bits()) {
             (0, 0) => Some(MajorAxis::Z),
             (xs, _) if xs == all => Some(MajorAxis::X),
             (0, ys) if ys == all => Some(MajorAxis::Y),
             _ => None,
         };
-        let [across, upwards, along] = shear.turned(direction);
+        let [across, upwards, along] = shear.permuted(direction);
         let reciprocal = one / along;
         Self {
             x: across * reciprocal,
@@ -79,8 +79,8 @@ impl<L: SimdFloat> Shear<L> {
 
     /// The components in cyclic order, the major axis last.
     #[inline(always)]
-    fn turned(&self, v: Vec3<L>) -> [L; 3] {
-        match self.common {
+    fn permuted(&self, v: Vec3<L>) -> [L; 3] {
+        match self.common_axis {
             Some(MajorAxis::X) => [v.y, v.z, v.x],
             Some(MajorAxis::Y) => [v.z, v.x, v.y],
             Some(MajorAxis::Z) => [v.x, v.y, v.z],
@@ -102,7 +102,7 @@ impl<L: SimdFloat> Shear<L> {
     /// from the ray, and the distance along the ray where it is nearest. The square is infinite if that is behind
     /// the start.
     #[inline(always)]
-    fn edge_beside(&self, from: [L; 3], to: [L; 3]) -> (L, L, L) {
+    fn nearest_on_edge(&self, from: [L; 3], to: [L; 3]) -> (L, L, L) {
         let (zero, one) = (self.x.like(L::Real::ZERO), self.x.like(L::Real::ONE));
         let (x, y) = (to[0] - from[0], to[1] - from[1]);
         let share = -(from[0] * x + from[1] * y) / (x * x + y * y);
@@ -120,35 +120,38 @@ impl<L: SimdFloat> Shear<L> {
     #[inline(always)]
     pub fn passing(&self, [a, b, c]: [[L; 3]; 3]) -> Passing<L> {
         let edges = [
-            self.edge_beside(a, b),
-            self.edge_beside(b, c),
-            self.edge_beside(c, a),
+            self.nearest_on_edge(a, b),
+            self.nearest_on_edge(b, c),
+            self.nearest_on_edge(c, a),
         ];
         let zero = self.x.like(L::Real::ZERO);
-        let (mut least, mut nearest, mut at) = edges[0];
-        let (mut most, mut second) = (least, zero.like(L::Real::INFINITY));
-        for (turn, square, place) in [edges[1], edges[2]] {
-            (least, most) = (least.min(turn), most.max(turn));
-            at = L::select(square.less(nearest), place, at);
+        let (mut min_orientation, mut nearest, mut nearest_at) = edges[0];
+        let (mut max_orientation, mut second) = (min_orientation, zero.like(L::Real::INFINITY));
+        for (orientation, square, at) in [edges[1], edges[2]] {
+            (min_orientation, max_orientation) = (
+                min_orientation.min(orientation),
+                max_orientation.max(orientation),
+            );
+            nearest_at = L::select(square.less(nearest), at, nearest_at);
             second = second.min(nearest.max(square));
             nearest = nearest.min(square);
         }
         Passing {
             // All edges have the same orientation around the ray.
-            inside: zero.less(least) | most.less(zero),
+            inside: zero.less(min_orientation) | max_orientation.less(zero),
             nearest: nearest.sqrt(),
             second: second.sqrt(),
-            at,
+            nearest_at,
         }
     }
 
     /// A lower bound of the distance between the ray and a triangle with these sheared corners, by the box around
     /// it.
     #[inline(always)]
-    pub fn least_beside(&self, [a, b, c]: [[L; 3]; 3]) -> L {
+    pub fn min_distance(&self, [a, b, c]: [[L; 3]; 3]) -> L {
         let x = a[0].min(b[0]).min(c[0]).max(-a[0].max(b[0]).max(c[0]));
         let y = a[1].min(b[1]).min(c[1]).max(-a[1].max(b[1]).max(c[1]));
-        x.max(y) * self.x.like_f64(LEAST_ACROSS)
+        x.max(y) * self.x.like_f64(MIN_SHEARED_RATIO)
     }
 
     /// The distance to the plane of a triangle with these sheared corners and edge functions. All three functions
@@ -161,7 +164,7 @@ impl<L: SimdFloat> Shear<L> {
     /// A corner relative to the ray's origin: sheared x and y, and its depth along the axis.
     #[inline(always)]
     pub fn apply(&self, corner: Vec3<L>) -> [L; 3] {
-        let [x, y, depth] = self.turned(corner);
+        let [x, y, depth] = self.permuted(corner);
         [x - self.x * depth, y - self.y * depth, depth]
     }
 }

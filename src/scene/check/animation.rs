@@ -19,27 +19,27 @@ pub fn check_animation(at: &At, scene: &Scene) -> Check {
     let animation: &Animation = &scene.animation;
     let rate = at.field("frames_per_second");
     rate.within(animation.frames_per_second, FRAME_RATES)?;
-    let here = at.field("keys");
-    check_keys(&here, &animation.keys)?;
+    let list_at = at.field("keys");
+    check_keys(&list_at, &animation.keys)?;
     for (index, key) in animation.keys.iter().enumerate() {
-        check_camera(&here.index(index).field("value"), &key.value)?;
+        check_camera(&list_at.index(index).field("value"), &key.value)?;
     }
-    let here = at.field("tracks");
+    let list_at = at.field("tracks");
     let targets = animation.tracks.iter().map(|track| &track.target);
     let owners = Owners::of(scene, targets);
     let mut known = HashSet::new();
     for (index, track) in animation.tracks.iter().enumerate() {
-        let at = here.index(index);
+        let at = list_at.index(index);
         if !known.insert(&track.target) {
             let name = track.target.name();
             return at
                 .field("target")
                 .refuse(format!("there is another track for {name:?}"));
         }
-        let Some(now) = owners.get(scene, &track.target) else {
+        let Some(current) = owners.get(scene, &track.target) else {
             return at.field("target").refuse(no_owner(scene, &track.target));
         };
-        check_track(&at, now, track)?;
+        check_track(&at, current, track)?;
     }
     match &animation.take {
         Some(take) => check_take(&at.field("take"), take),
@@ -89,14 +89,14 @@ fn no_owner(scene: &Scene, target: &Target) -> String {
     }
 }
 
-fn check_track(at: &At, sample: Value, track: &Track) -> Check {
+fn check_track(at: &At, current: Value, track: &Track) -> Check {
     let at = at.field("keys");
     if track.keys.is_empty() {
         return at.refuse("a track needs at least one key".to_owned());
     }
     check_keys(&at, &track.keys)?;
     for (index, key) in track.keys.iter().enumerate() {
-        let here = at.index(index);
+        let key_at = at.index(index);
         let is_orbit = matches!(key.interpolation, Interpolation::Orbit { .. });
         let what = match track.target {
             Target::ObjectRotation(_) => Some("a rotation"),
@@ -104,11 +104,11 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
             Target::ObjectPosition(_) | Target::LightPosition(_) => None,
         };
         if let Some(what) = what.filter(|_| is_orbit) {
-            let at = here.field("interpolation");
+            let at = key_at.field("interpolation");
             return at.refuse(format!("{what} cannot orbit a point: use Smooth or Linear"));
         }
-        let at = here.field("value");
-        match (key.value, sample) {
+        let at = key_at.field("value");
+        match (key.value, current) {
             (Value::Number(number), Value::Number(_)) => at.within(number, 0.0..=1.0)?,
             (Value::Point(point), Value::Point(_)) => at.point(point)?,
             (_, Value::Number(_)) => {
@@ -127,13 +127,13 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
 }
 
 fn check_take(at: &At, take: &Take) -> Check {
-    let here = at.field("samples");
+    let list_at = at.field("samples");
     if take.samples.is_empty() || take.samples.len() > MAX_KEYS {
-        return here.refuse(format!("a take must have between 1 and {MAX_KEYS} samples"));
+        return list_at.refuse(format!("a take must have between 1 and {MAX_KEYS} samples"));
     }
     let mut last = -1.0;
     for (index, sample) in take.samples.iter().enumerate() {
-        let at = here.index(index);
+        let at = list_at.index(index);
         at.index(0).within(sample.0, 0.0..=MAX_SECONDS)?;
         if sample.0 <= last {
             return at
@@ -144,11 +144,11 @@ fn check_take(at: &At, take: &Take) -> Check {
         at.index(1).point(sample.1)?;
         at.finite(&[sample.2, sample.3, sample.4])?;
     }
-    let here = at.field("lenses");
-    let mut next = 0;
+    let list_at = at.field("lenses");
+    let mut least_start = 0;
     for (index, lens) in take.lenses.iter().enumerate() {
-        let at = here.index(index);
-        if (index == 0 && lens.from != 0) || lens.from < next {
+        let at = list_at.index(index);
+        if (index == 0 && lens.from != 0) || lens.from < least_start {
             return at
                 .field("from")
                 .refuse("lenses must start at sample 0 and be in order".to_owned());
@@ -159,11 +159,11 @@ fn check_take(at: &At, take: &Take) -> Check {
                 .field("from")
                 .refuse(format!("the last sample of this take is {most}"));
         }
-        next = lens.from + 1;
+        least_start = lens.from + 1;
         check_lens(&at, lens.projection_distance, lens.orthographic_height)?;
     }
     if take.lenses.is_empty() {
-        return here.refuse("a take needs a lens for its first sample".to_owned());
+        return list_at.refuse("a take needs a lens for its first sample".to_owned());
     }
     Ok(())
 }

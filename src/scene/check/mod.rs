@@ -24,7 +24,7 @@ use super::shape::{Property, PropertyValue, Shape};
 use super::whole::{MAX_BYTES, Scene, VERSION};
 
 /// Number of faces that always fits into a scene file, unless the points are written with hundreds of digits.
-const FACES_WITH_ROOM: usize = 1_000_000;
+const FACES_THAT_FIT: usize = 1_000_000;
 
 /// Largest number of pixels of a picture: 1 GiB of 8-bit RGBA.
 const MAX_PIXELS: u64 = 1 << 28;
@@ -45,7 +45,7 @@ pub fn check_edit(scene: &Scene, valid: &Scene) -> Result<(), Problem> {
     check_since(scene, Some(valid))?;
     // Measuring the length takes long, and most edits do not add triangles.
     let is_same = scene.objects.is_same(&valid.objects);
-    if is_same || scene.own_faces() <= valid.own_faces().max(FACES_WITH_ROOM) {
+    if is_same || scene.own_faces() <= valid.own_faces().max(FACES_THAT_FIT) {
         return Ok(());
     }
     let bytes = scene.own_bytes();
@@ -79,7 +79,7 @@ fn check_since(scene: &Scene, valid: Option<&Scene>) -> Result<(), Problem> {
     check_lights(&root.field("lights"), scene)?;
     check_render(&root.field("render"), &scene.render)?;
     let is_same_flight = valid.is_some_and(|valid| {
-        Arc::ptr_eq(&valid.animation, &scene.animation) && valid.names_are_those_of(scene)
+        Arc::ptr_eq(&valid.animation, &scene.animation) && valid.has_names_of(scene)
     });
     if is_same_flight {
         return Ok(());
@@ -160,7 +160,7 @@ impl Scene {
 
     /// Returns whether the objects and lights of another scene have the same names. May be `false` if the object
     /// lists are divided into different chunks.
-    fn names_are_those_of(&self, other: &Self) -> bool {
+    fn has_names_of(&self, other: &Self) -> bool {
         let changes = other.objects.changes(&self.objects);
         let is_named_alike = |(index, object): (usize, &Object)| {
             self.objects.get(index).map(|own| &own.name) == Some(&object.name)

@@ -4,13 +4,13 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use crate::mesh::FARTHEST;
+use crate::mesh::MAX_ABS_COORDINATE;
 use crate::scene::direction::unit;
 use crate::scene::locate::PathStep;
 use crate::scene::notation::format_number;
 
 /// Largest absolute coordinate or length, in world units, and largest absolute angle in degrees.
-pub const MAX_COORDINATE: f64 = FARTHEST;
+pub const MAX_COORDINATE: f64 = MAX_ABS_COORDINATE;
 
 /// Largest scale factor; the smallest is its reciprocal.
 pub const MAX_FACTOR: f64 = 1e6;
@@ -30,13 +30,13 @@ pub type Check = Result<(), Problem>;
 /// A position in the scene, with checks for common kinds of values. The path to it is only built when a check
 /// fails.
 pub struct At<'a> {
-    above: Option<&'a Self>,
-    step: Place<'a>,
+    parent: Option<&'a Self>,
+    step: Step<'a>,
 }
 
 /// One step of a path.
 #[derive(Clone, Copy)]
-enum Place<'a> {
+enum Step<'a> {
     Root,
     Field(&'static str),
     Index(usize),
@@ -47,49 +47,49 @@ impl<'a> At<'a> {
     /// The scene itself.
     pub fn root() -> Self {
         Self {
-            above: None,
-            step: Place::Root,
+            parent: None,
+            step: Step::Root,
         }
     }
 
-    fn then(&'a self, step: Place<'a>) -> Self {
+    fn child(&'a self, step: Step<'a>) -> Self {
         Self {
-            above: Some(self),
+            parent: Some(self),
             step,
         }
     }
 
     /// A field of this value.
     pub fn field(&'a self, name: &'static str) -> Self {
-        self.then(Place::Field(name))
+        self.child(Step::Field(name))
     }
 
     /// An item of this list, counted from 0.
     pub fn index(&'a self, index: usize) -> Self {
-        self.then(Place::Index(index))
+        self.child(Step::Index(index))
     }
 
     /// The value of a key of this map.
     pub fn key(&'a self, key: &'a str) -> Self {
-        self.then(Place::Key(key))
+        self.child(Step::Key(key))
     }
 
     fn name(&self) -> String {
         match self.step {
-            Place::Root => "the scene".to_owned(),
-            Place::Field(name) => name.to_owned(),
-            Place::Index(index) => format!("item {}", index + 1),
-            Place::Key(key) => format!("{key:?}"),
+            Step::Root => "the scene".to_owned(),
+            Step::Field(name) => name.to_owned(),
+            Step::Index(index) => format!("item {}", index + 1),
+            Step::Key(key) => format!("{key:?}"),
         }
     }
 
     fn path(&self) -> Vec<PathStep> {
-        let mut path = self.above.map_or(Vec::new(), At::path);
+        let mut path = self.parent.map_or(Vec::new(), At::path);
         path.extend(match self.step {
-            Place::Root => None,
-            Place::Field(name) => Some(PathStep::Field(name)),
-            Place::Index(index) => Some(PathStep::Index(index)),
-            Place::Key(key) => Some(PathStep::Key(key.to_owned())),
+            Step::Root => None,
+            Step::Field(name) => Some(PathStep::Field(name)),
+            Step::Index(index) => Some(PathStep::Index(index)),
+            Step::Key(key) => Some(PathStep::Key(key.to_owned())),
         });
         path
     }
@@ -168,14 +168,14 @@ impl<'a> At<'a> {
     pub fn factors(&self, value: DVec3) -> Check {
         let is_factor = |factor: f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
         let words = "must have factors between 1e-6 and 1e6, or -1e6 and -1e-6";
-        self.each(value, is_factor, words)
+        self.each_component(value, is_factor, words)
     }
 
-    /// Checks that each component is finite and satisfies `is_good`.
-    fn each(&self, value: DVec3, is_good: impl Fn(f64) -> bool, words: &str) -> Check {
+    /// Checks that each component is finite and satisfies `is_valid`.
+    fn each_component(&self, value: DVec3, is_valid: impl Fn(f64) -> bool, words: &str) -> Check {
         self.finite(&value.to_array())?;
         let mut parts = value.to_array().into_iter();
-        match parts.find(|part| !is_good(*part)) {
+        match parts.find(|part| !is_valid(*part)) {
             None => Ok(()),
             Some(part) => {
                 let found = format_number(part);
@@ -199,7 +199,7 @@ impl<'a> At<'a> {
     /// Checks a colour, 0–255 per channel.
     pub fn color(&self, value: DVec3) -> Check {
         let is_channel = |channel: f64| (0.0..=255.0).contains(&channel);
-        self.each(value, is_channel, "must have channels between 0 and 255")
+        self.each_component(value, is_channel, "must have channels between 0 and 255")
     }
 }
 
@@ -213,7 +213,7 @@ pub fn no_such<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a str>)
     if first.is_empty() {
         return format!("there is no {kind} named {name:?}: the scene has none");
     }
-    let more = if known.next().is_some() { ", …" } else { "" };
+    let ellipsis = if known.next().is_some() { ", …" } else { "" };
     let first = first.join(", ");
-    format!("there is no {kind} named {name:?}; there are {first}{more}")
+    format!("there is no {kind} named {name:?}; there are {first}{ellipsis}")
 }

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, EulerRot};
 
 /// Largest step, in degrees, in which a rotation is tracked. Smaller steps could end in a gimbal lock, where two of
 /// the three angles turn about one axis and it is ambiguous which of them has changed.
-const STEP: f64 = 90.0;
+const MAX_STEP: f64 = 90.0;
 /// Largest number of such steps: for larger rotations, the number of full turns is not meaningful.
 const MOST_STEPS: f64 = 4000.0;
 
@@ -15,16 +15,16 @@ pub fn orientation_of(angles: DVec3) -> DQuat {
 }
 
 /// Returns the angles of a rotation in degrees about x, then y, then z. Of the two solutions, each with any number
-/// of full turns, it is the one nearer to `before`.
-pub fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
+/// of full turns, it is the one nearer to `previous`.
+pub fn angles_of(orientation: DQuat, previous: DVec3) -> DVec3 {
     let (z, y, x) = orientation.to_euler(EulerRot::ZYX);
     let one = DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees());
     let other = DVec3::new(one.x + 180.0, 180.0 - one.y, one.z + 180.0);
     let [one, other] = [one, other].map(|angles| {
-        let turns = ((before - angles) / 360.0).round();
+        let turns = ((previous - angles) / 360.0).round();
         angles + turns * 360.0
     });
-    let nearer = if one.distance_squared(before) <= other.distance_squared(before) {
+    let nearer = if one.distance_squared(previous) <= other.distance_squared(previous) {
         one
     } else {
         other
@@ -34,12 +34,12 @@ pub fn angles_of(orientation: DQuat, before: DVec3) -> DVec3 {
 
 /// Returns the angles after a further rotation, in degrees about a unit axis, including its full turns.
 pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
-    let steps = (degrees.abs() / STEP).ceil().clamp(1.0, MOST_STEPS) as u32;
+    let steps = (degrees.abs() / MAX_STEP).ceil().clamp(1.0, MOST_STEPS) as u32;
     let start = orientation_of(angles);
-    (1..=steps).fold(angles, |before, step| {
+    (1..=steps).fold(angles, |previous, step| {
         let degrees = degrees * f64::from(step) / f64::from(steps);
-        let by = DQuat::from_axis_angle(axis, degrees.to_radians());
-        angles_of(by * start, before)
+        let rotation = DQuat::from_axis_angle(axis, degrees.to_radians());
+        angles_of(rotation * start, previous)
     })
 }
 

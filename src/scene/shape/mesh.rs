@@ -11,7 +11,7 @@ use super::angles::{angles_of, orientation_of, turned_about};
 use super::describe::{Describe, Property, PropertyValue, scaled, turned};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
-use crate::mesh::{FARTHEST, Triangles, icosphere};
+use crate::mesh::{MAX_ABS_COORDINATE, Triangles, icosphere};
 use crate::scene::notation;
 
 /// A triangle mesh, which is moved, turned and scaled as a whole.
@@ -201,7 +201,7 @@ impl Mesh {
     }
 
     /// The linear part of [`Self::transform`]: scale, then rotation.
-    pub fn turn(&self) -> DMat3 {
+    pub fn linear_transform(&self) -> DMat3 {
         let [x, y, z] = self.rotation.to_array().map(f64::to_radians);
         DMat3::from_rotation_z(z)
             * DMat3::from_rotation_y(y)
@@ -228,7 +228,7 @@ impl Mesh {
     /// The transform from local to world coordinates.
     pub fn transform(&self) -> DAffine3 {
         DAffine3 {
-            matrix3: self.turn(),
+            matrix3: self.linear_transform(),
             translation: self.position,
         }
     }
@@ -282,7 +282,8 @@ impl Describe for Mesh {
     fn problem(&self) -> Option<String> {
         let (low, high) = self.bounds()?;
         let farthest = low.abs().max(high.abs()).max_element();
-        (farthest > FARTHEST).then(|| "the mesh must lie within 1e12 of the origin".to_owned())
+        (farthest > MAX_ABS_COORDINATE)
+            .then(|| "the mesh must lie within 1e12 of the origin".to_owned())
     }
 
     /// Returns the bounds of the transformed local bounding box, which may be larger than those of the triangles.

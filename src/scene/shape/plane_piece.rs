@@ -33,11 +33,11 @@ const ALONG_NORMAL: f64 = 1e-12;
 
 /// Distance, as a share of the coordinates, below which two surfaces count as one: single precision cannot tell
 /// them apart.
-const IN_PLANE: f64 = 4.0 / (1 << 24) as f64;
+const SAME_PLANE: f64 = 4.0 / (1 << 24) as f64;
 
 /// Share of the smaller size by which two pieces must reach across each other's borders to overlap: neighbours
 /// share their borders.
-const OVER_BORDER: f64 = 1e-6;
+const MIN_OVERLAP: f64 = 1e-6;
 
 impl PlanePiece {
     /// Returns the triangle between three corners; `None` if it has no area.
@@ -95,7 +95,7 @@ impl PlanePiece {
     /// Returns the largest distance from the plane, in world units, at which points count as on it, if their
     /// coordinates relative to `centre` are at most `farthest`.
     pub fn plane_tolerance(&self, centre: DVec3, farthest: f64) -> f64 {
-        IN_PLANE * farthest.max((self.point - centre).abs().max_element())
+        SAME_PLANE * farthest.max((self.point - centre).abs().max_element())
     }
 
     /// Returns whether both cover some common area of the same plane. Rounding is estimated from coordinates
@@ -110,7 +110,7 @@ impl PlanePiece {
         let reach = |point: &DVec3| (*point - centre).abs().max_element();
         let points = small.points();
         let farthest = points.iter().map(reach).fold(reach(&large.point), f64::max);
-        small.lies_over(large, IN_PLANE * farthest)
+        small.lies_over(large, SAME_PLANE * farthest)
     }
 
     /// Returns whether all of this piece is within `height` world units of the plane of `large`, which is no
@@ -147,20 +147,20 @@ impl PlanePiece {
             Outline::Disc(radius) => radius,
         };
         let (across, along) = self.normal.any_orthonormal_pair();
-        [DVec3::ZERO, across, along].map(|way| self.point + way * radius)
+        [DVec3::ZERO, across, along].map(|direction| self.point + direction * radius)
     }
 
     /// Returns whether two pieces of the same plane share an area: no line in the plane separates them. A
     /// separating line is parallel to an edge, or perpendicular to the line from a disc's centre to the nearest
     /// point of the other.
     fn overlaps(&self, other: &Self, normal: DVec3) -> bool {
-        let border = OVER_BORDER * self.size().min(other.size());
+        let border = MIN_OVERLAP * self.size().min(other.size());
         let separating_axes = self
             .separating_axes(other, normal)
             .chain(other.separating_axes(self, normal));
         let mut separating_axes = separating_axes.filter_map(DVec3::try_normalize);
-        separating_axes.all(|way| {
-            let (own, theirs) = (self.interval(way), other.interval(way));
+        separating_axes.all(|direction| {
+            let (own, theirs) = (self.interval(direction), other.interval(direction));
             own.0 + border < theirs.1 && theirs.0 + border < own.1
         })
     }
@@ -181,15 +181,15 @@ impl PlanePiece {
     }
 
     /// Returns the interval that the piece covers along a unit direction in its plane.
-    fn interval(&self, way: DVec3) -> (f64, f64) {
+    fn interval(&self, direction: DVec3) -> (f64, f64) {
         match self.outline {
             Outline::Endless => (f64::NEG_INFINITY, f64::INFINITY),
             Outline::Triangle(corners) => {
-                let [a, b, c] = corners.map(|corner| way.dot(corner));
+                let [a, b, c] = corners.map(|corner| direction.dot(corner));
                 (a.min(b).min(c), a.max(b).max(c))
             }
             Outline::Disc(radius) => {
-                let middle = way.dot(self.point);
+                let middle = direction.dot(self.point);
                 (middle - radius, middle + radius)
             }
         }

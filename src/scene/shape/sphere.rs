@@ -20,7 +20,7 @@ pub struct Sphere {
 
 /// Largest gap between spheres that count as identical, as a share of their size (radius plus largest coordinate):
 /// the rounding left by moving or scaling there and back.
-const SAME: f64 = 64.0 * f64::EPSILON;
+const SAME_SPHERE: f64 = 64.0 * f64::EPSILON;
 /// A direction along which the positions of spheres in regular rows differ.
 const SORT_DIRECTION: DVec3 = DVec3::new(0.791_287_3, 0.529_103_7, 0.306_419_1);
 
@@ -28,7 +28,7 @@ impl Sphere {
     /// Returns whether both spheres are identical up to rounding, so that rounding would decide which is seen.
     pub fn is_same(&self, other: &Self) -> bool {
         let size = |ball: &Self| ball.radius + ball.center.abs().max_element();
-        self.gap(other) <= SAME * size(self).max(size(other))
+        self.gap(other) <= SAME_SPHERE * size(self).max(size(other))
     }
 
     /// Returns an upper bound on the distance between the surfaces of two nearly identical spheres, in world units.
@@ -42,8 +42,8 @@ impl Sphere {
     }
 
     /// The largest difference of [`Self::along`] between this sphere and an identical one.
-    pub fn room(&self) -> f64 {
-        2.0 * SAME * (self.radius + self.center.abs().max_element())
+    pub fn along_tolerance(&self) -> f64 {
+        2.0 * SAME_SPHERE * (self.radius + self.center.abs().max_element())
     }
 }
 
