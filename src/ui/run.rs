@@ -253,7 +253,7 @@ impl App {
         if self.editor.changes(Action::Edit(paste)) {
             self.tell_unseen("What was pasted");
             if !is_whole {
-                self.editor.tell_missing_meshes();
+                self.editor.report_missing_meshes();
             }
         }
     }
