@@ -9,7 +9,7 @@ use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 use super::error::ExportError;
 use super::fingerprint::fingerprint;
 use super::manifest::{Hash, Manifest};
-use super::save::disk;
+use super::save::disk_error;
 use super::sequence::Sequence;
 use super::writers::{WriteJob, WriteResult, Writers};
 use crate::image::{Film, Format, Image, RenderCost};
@@ -315,7 +315,7 @@ impl Exporting {
         outcome?;
         if self.in_flight > 0 {
             let fault = io::Error::other("a thread that writes stopped with a fault of its own");
-            return Err(disk(&self.sequence.folder, fault));
+            return Err(disk_error(&self.sequence.folder, fault));
         }
         if self.done.so_far() == self.done.total {
             self.check_frames()?;

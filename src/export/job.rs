@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::{check_place, disk, write_text};
+use super::save::{check_place, disk_error, write_text};
 use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
@@ -101,7 +101,7 @@ pub fn write_job(
         .collect();
     // An older template written by Glint is overwritten without a backup.
     if read_file(path).is_ok_and(|existing| !is_template(&String::from_utf8_lossy(&existing))) {
-        let backup = back_up(path).map_err(|source| disk(path, source))?;
+        let backup = back_up(path).map_err(|source| disk_error(path, source))?;
         replaced.push((path.to_owned(), backup));
     }
     write_text(path, &job_template(sequence, &stem, &name))?;
@@ -119,10 +119,10 @@ fn write_scene(
     file: Option<&Path>,
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
-    let disk = |source| disk(path, source);
+    let disk_error = |source| disk_error(path, source);
     // Regular files only: a pipe can be read only once.
     let text = if let Some(file) = file.filter(|file| file.is_file()) {
-        fs::read(file).map_err(disk)?
+        fs::read(file).map_err(disk_error)?
     } else {
         let (header, scene) = (document.header.clone(), document.scene.inlined());
         let text = Document { header, scene }.to_text()?;
@@ -131,8 +131,8 @@ fn write_scene(
     };
     let differs = read_file(path).is_ok_and(|existing| existing != text);
     let backup = differs.then(|| back_up(path)).transpose();
-    let backup = backup.map_err(disk)?;
-    write_atomic(path, &text).map_err(disk)?;
+    let backup = backup.map_err(disk_error)?;
+    write_atomic(path, &text).map_err(disk_error)?;
     Ok(backup)
 }
 

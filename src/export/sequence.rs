@@ -13,7 +13,7 @@ use super::fingerprint::fingerprint;
 use super::frames::{Frames, FramesError};
 use super::manifest::{Hash, MANIFEST, Manifest, append_entry, hash_file};
 use super::pattern::Pattern;
-use super::save::{disk, write_beside};
+use super::save::{disk_error, write_beside};
 use crate::animate::{CameraPath, shot};
 use crate::files::{make_folder, remove_leftovers};
 use crate::image::Format;
@@ -153,7 +153,7 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Disk`].
     pub fn prepare(&self) -> Result<(), ExportError> {
-        make_folder(&self.folder).map_err(|source| disk(&self.folder, source))?;
+        make_folder(&self.folder).map_err(|source| disk_error(&self.folder, source))?;
         remove_leftovers(&self.folder);
         Ok(())
     }
@@ -224,9 +224,9 @@ impl Sequence {
         let mut file = new_file.as_file();
         let content = file.rewind().and_then(|()| hash_file(file));
         let placed = content.and_then(|content| new_file.place().map(|()| content));
-        let content = placed.map_err(|source| disk(&path, source))?;
+        let content = placed.map_err(|source| disk_error(&path, source))?;
         append_entry(&self.folder, &self.file(frame), &content, fingerprint, time)
-            .map_err(|source| disk(&self.folder.join(MANIFEST), source))
+            .map_err(|source| disk_error(&self.folder.join(MANIFEST), source))
     }
 }
 

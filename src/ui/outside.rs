@@ -248,7 +248,7 @@ impl Guard {
         let wake = move || ctx.request_repaint();
         Self {
             files,
-            alarm: Background::look_out("glint-watch", RHYTHM, is_there, wake),
+            alarm: Background::poll_until("glint-watch", RHYTHM, is_there, wake),
             _alive: alive,
         }
     }
