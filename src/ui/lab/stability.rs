@@ -42,7 +42,7 @@ impl Stability {
             });
             ui.vertical(|ui| {
                 let map = &self.maps[self.chosen];
-                let stand = map.subject.standing(scene);
+                let stand = map.subject.scene_position(scene);
                 ui.label(headline(map));
                 ui.weak(map.sentence());
                 let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
