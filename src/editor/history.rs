@@ -276,7 +276,7 @@ mod tests {
         }
         assert_eq!(history.done.len(), MAX_STEPS);
         let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
-        assert!(bytes < 50 << 20, "{bytes} bytes for {MOST_STEPS} steps");
+        assert!(bytes < 50 << 20, "{bytes} bytes for {MAX_STEPS} steps");
         for step in 0..12 {
             history.end_gesture(&scene);
             let before = snapshot(&scene);

@@ -134,7 +134,7 @@ fn open(path: &Path) -> io::Result<(File, String)> {
     options.append(true).read(true);
     match options.clone().create_new(true).open(path) {
         Ok(mut file) => {
-            file.write_all(format!("{HEAD}\n").as_bytes())?;
+            file.write_all(format!("{HEADER}\n").as_bytes())?;
             return Ok((file, String::new()));
         }
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}

@@ -13,7 +13,7 @@ use std::time::Duration;
 use glam::DVec3;
 
 use super::error::last_lines;
-use super::program::end_of;
+use super::program::wait_for_exit;
 use crate::files::without_path;
 use crate::image::Image;
 use crate::plan::PackedMesh;
@@ -364,7 +364,7 @@ pub fn by_povray(
         _ => disk(Path::new("povray"))(source),
     })?;
     let is_wanted = || !control.is_stopped();
-    let status = end_of(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
+    let status = wait_for_exit(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
     let status = status.ok_or(PovrayError::Stopped)?;
     let log = std::fs::read(&path).map_err(disk(&path))?;
     let failed = || PovrayError::Failed(last_lines(&log));
