@@ -77,7 +77,7 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
             Err(error) => return Err(error),
         }
     }
-    Err(io::Error::other("there are too many backups of it already"))
+    Err(io::Error::other("there are already too many backups of it"))
 }
 
 /// A temporary file beside the file that it will replace. No other process writes to it. Dropping it removes it;
@@ -106,11 +106,11 @@ impl NewFile {
         if let Some(existing) = &existing {
             let refused = |why: &str| Err(io::Error::other(why));
             if !existing.is_file() {
-                return refused("there is something of that name that is not a file");
+                return refused("something with this name exists and is not a file");
             }
             // Renaming over a read-only file would work: that needs permission for its folder only.
             if existing.permissions().readonly() {
-                return refused("the file of that name may not be written to");
+                return refused("the file is read-only");
             }
         }
         let folder = match target.parent() {
@@ -203,7 +203,7 @@ pub fn make_folder(path: &Path) -> io::Result<()> {
     let target = resolve_links(path)?;
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_dir()) {
         return Err(io::Error::other(
-            "there is something of that name that is not a folder",
+            "something with this name exists and is not a folder",
         ));
     }
     // Without dots in the path: no folder can be created under such a name.
@@ -374,7 +374,7 @@ fn resolve_links(path: &Path) -> io::Result<PathBuf> {
         };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    Err(io::Error::other("it is a link that leads back to itself"))
+    Err(io::Error::other("it is a link that points back to itself"))
 }
 
 /// Creates a temporary file and locks it. Until it is locked, another process may take it for a leftover and remove
@@ -405,9 +405,10 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         let error = without_path(error);
         match error.kind() {
             // The existing file may be writable, so the message says that the folder is the reason.
-            kind @ io::ErrorKind::PermissionDenied => {
-                io::Error::new(kind, format!("its folder may not be written to: {error}"))
-            }
+            kind @ io::ErrorKind::PermissionDenied => io::Error::new(
+                kind,
+                format!("writing to its folder is not permitted: {error}"),
+            ),
             _ => error,
         }
     })

@@ -35,8 +35,8 @@ fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<(), CliError> {
     if let Some(path) = scene_path {
         Document::load(&path)?;
     }
-    let stats =
-        stats.ok_or_else(|| CliError::failed("the window was closed before it had a picture"))?;
+    let stats = stats
+        .ok_or_else(|| CliError::failed("the window was closed before it showed a picture"))?;
     cli::say(&serde_json::to_string(&stats)?);
     Ok(())
 }

@@ -46,10 +46,10 @@ impl Preset {
                 "Turntable",
                 "Once around the selection on an exact circle, always looking at it",
             ),
-            Self::Dolly => ("Dolly", "Straight towards the selection, half of the way"),
+            Self::Dolly => ("Dolly", "Straight towards the selection, half the distance"),
             Self::Crane => ("Crane", "Straight up, looking at the selection"),
             Self::Ellipse => ("Ellipse", "Around the selection on an ellipse"),
-            Self::FigureEight => ("Figure eight", "An eight in front of the selection"),
+            Self::FigureEight => ("Figure eight", "A figure eight in front of the selection"),
         }
     }
 

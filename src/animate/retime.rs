@@ -36,13 +36,13 @@ impl Retime {
         match self {
             Self::ConstantSpeed => (
                 "Constant speed",
-                "The camera goes as far in each second as in any other; keys of values stay",
+                "The camera moves equally fast all the time; keys of values stay",
             ),
             Self::TrimPauses => (
                 "Trim pauses",
-                "Without the time in which the camera does not move; keys of values stay",
+                "Removes the time in which the camera does not move; keys of values stay",
             ),
-            Self::Smooth => ("Smooth", "Takes corners off the flight"),
+            Self::Smooth => ("Smooth", "Rounds the corners of the flight"),
         }
     }
 

@@ -15,10 +15,10 @@ pub const MAX_TIMES: u32 = 1_000_000;
 /// How large a picture is to be.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct SizeArgs {
-    /// Width in pixels; alone, it keeps the scene's aspect
+    /// Width in pixels; without --height, the aspect ratio of the scene is kept
     #[arg(long, value_parser = whole_number::<1, MAX_SIDE>, allow_negative_numbers = true)]
     width: Option<u32>,
-    /// Height in pixels; alone, it keeps the scene's aspect
+    /// Height in pixels; without --width, the aspect ratio of the scene is kept
     #[arg(long, value_parser = whole_number::<1, MAX_SIDE>, allow_negative_numbers = true)]
     height: Option<u32>,
 }
@@ -81,7 +81,7 @@ fn proportional_side(
     let side = u32::try_from(exact).ok().filter(|side| *side <= MAX_SIDE);
     side.map(|side| side.max(1)).ok_or_else(|| {
         CliError::usage(format!(
-            "in the scene's aspect, the {name} would be {exact} pixels, and at most {MAX_SIDE} can be: give both"
+            "at the scene's aspect ratio, the {name} would be {exact} pixels, and the limit is {MAX_SIDE}: give both width and height"
         ))
     })
 }

@@ -37,38 +37,38 @@ const BAR_STEPS: u64 = 1000;
 
 #[derive(Debug, Args)]
 pub struct ChartArgs {
-    /// The scene files (RON); several become one picture with the same axes
+    /// Scene files (RON); several are charted in one picture with the same axes
     #[arg(required_unless_present = "growth")]
     scenes: Vec<PathBuf>,
-    /// Instead of the chart: measure how time grows with the number of primitives, in scenes made for that
+    /// Instead of the chart, measure how time grows with the number of primitives, in generated scenes
     #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
     growth: bool,
-    /// Instead of the chart: simulate how up to 128 cores would share pictures of the scenes, one sample per pixel, from
-    /// the times of their pieces
+    /// Instead of the chart, simulate how up to 128 cores would share pictures of the scenes, with one sample per pixel,
+    /// from the measured times of their pieces
     #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray", "threads"])]
     cores: bool,
-    /// Longer side of the pictures that are compared, in pixels
+    /// Longer side of the compared pictures, in pixels
     #[arg(long, default_value = "256", value_parser = whole_number::<8, 2048>, allow_negative_numbers = true)]
     side: u32,
-    /// Write all figures to this file
+    /// Write all measurements to this CSV file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draw the chart into this picture (PNG, PPM or EXR)
+    /// Save the chart as this picture (PNG, PPM or EXR)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
     /// Colours of the picture
     #[arg(long, value_name = "THEME", default_value = "dark")]
     theme: PictureTheme,
-    /// Size of the picture in pixels [default: 1600x960, more for many scenes]
+    /// Size of the picture in pixels [default: 1600x960, larger for many scenes]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_picture_size)]
     size: Option<(u32, u32)>,
-    /// Name the cheapest way whose error is at most this: 55dB, or an RMSE (linear, 0–1)
+    /// Name the cheapest method whose error is at most this: 55dB, or an RMSE (linear, 0–1)
     #[arg(long, value_name = "ERROR", value_parser = parse_error)]
     within: Option<f64>,
-    /// Name the closest way that takes at most so long: 16ms, 2s, or a number of milliseconds
+    /// Name the most accurate method within this time: 16ms, 2s, or a number of milliseconds
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true)]
     budget: Option<Duration>,
-    /// Put POV-Ray, an independent engine, among the ways, where it is installed
+    /// Include POV-Ray, an independent renderer, if it is installed
     #[arg(long)]
     povray: bool,
     #[command(flatten)]
@@ -133,7 +133,7 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         && args.scenes.iter().any(|scene| is_same_file(scene, path))
     {
         let path = path.display();
-        let sentence = format!("{path} is the scene: give the figures another name");
+        let sentence = format!("{path} is the scene file: give the CSV file another name");
         return Err(CliError::usage(sentence));
     }
     let threads = args.threads.start()?;
@@ -290,10 +290,10 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> Strin
         None => closest_within(&costs, budget.as_secs_f64() * 1e3),
     };
     best.map_or_else(
-        || "nothing measured is within that".to_owned(),
+        || "no measured method is within that limit".to_owned(),
         |index| {
             let candidate = &study.measurements[index].candidate;
-            format!("take {}: {}", candidate.name, candidate.words())
+            format!("use {}: {}", candidate.name, candidate.words())
         },
     )
 }

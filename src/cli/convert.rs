@@ -14,11 +14,11 @@ use crate::words::{counted, for_shell};
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// Mesh file, OBJ (with MTL), STL, PLY, glTF or GLB; or a scene file (RON)
+    /// Mesh file (OBJ with MTL, STL, PLY, glTF or GLB) or scene file (RON)
     #[arg(value_name = "MESH|SCENE")]
     input: PathBuf,
-    /// Scene file (RON) to be written; refers to a mesh of one part beside it, and holds all others. Of a scene, a
-    /// file for POV-Ray (.pov)
+    /// Scene file (RON) to write, which refers to a mesh file of one part in its folder or below it, and embeds any
+    /// other; for a scene, the POV-Ray file (.pov) to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -32,11 +32,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), CliError> {
     match (is_mesh_file(&args.input), &args.output) {
         (false, path) if has_ending(path, "pov") => write_povray(args),
         (false, _) if has_ending(&args.input, "ron") => Err(CliError::usage(format!(
-            "{output}: what is made of a scene ends in .pov"
+            "{output}: a scene is converted to a POV-Ray file, which must end in .pov"
         ))),
         (_, path) if has_ending(path, "ron") => write_scene(args),
         _ => Err(CliError::usage(format!(
-            "{output}: a scene file ends in .ron"
+            "{output}: a scene file must end in .ron"
         ))),
     }
 }
@@ -47,7 +47,7 @@ fn write_povray(args: &ConvertArgs) -> Result<(), CliError> {
     let (width, height) = (scene.render.width, scene.render.height);
     let path = args.output.display().to_string();
     if path.contains(['\\', '"']) || !path.is_ascii() {
-        let sentence = "POV-Ray reads no file of such a name: rename it to draw it";
+        let sentence = "POV-Ray cannot read a file with this name: rename it first";
         say(&format!("{path}: {sentence}"));
         return Ok(());
     }
@@ -98,7 +98,7 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     check(&scene).map_err(|problem| {
         let (name, sentence) = (input.display(), problem.sentence);
         CliError::usage(format!(
-            "{name}: no scene shows this mesh whole: {sentence}"
+            "{name}: a scene cannot hold all of this mesh: {sentence}"
         ))
     })?;
     let objects = scene.objects.len();
@@ -107,7 +107,7 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     if let Some(backup) = backup.map_err(CliError::failed)? {
         let (name, backup) = (args.output.display(), backup.display());
         report_warning(&format!(
-            "what was in {name} had comments, and is kept as {backup}"
+            "the previous {name} had comments, and is kept as {backup}"
         ));
     }
     say(&format!(

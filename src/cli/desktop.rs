@@ -26,7 +26,7 @@ const SHELLS: [(Shell, &str); 3] = [
 /// [`CliError::Failed`], if there is no such folder or a file cannot be written.
 pub fn install(mut command: Command) -> Result<(), CliError> {
     let folder = data_folder().ok_or_else(|| {
-        CliError::failed("neither XDG_DATA_HOME nor HOME says where data of the user is kept")
+        CliError::failed("neither XDG_DATA_HOME nor HOME names the folder for user data")
     })?;
     let program = env::current_exe().map_err(CliError::failed)?;
     let entry = desktop_entry(&program);

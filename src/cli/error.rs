@@ -42,7 +42,7 @@ impl CliError {
 
     /// The failure of a trace that ended without a picture, although nothing stops one here.
     pub fn no_picture() -> Self {
-        Self::failed("the trace ended without a picture")
+        Self::failed("tracing ended without a picture")
     }
 
     /// Reports the error on stderr, and returns its exit code.

@@ -28,10 +28,10 @@ struct SequenceArgs {
     /// Frames, counted from 1: 1-202, 1,4 or 1-10:3 [default: all]
     #[arg(long, value_parser = Frames::parse, allow_hyphen_values = true)]
     frames: Option<Frames>,
-    /// Names of the frames, with %d where the number goes, or %05d for five digits
+    /// File names of the frames: %d stands for the number, %05d for five digits
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
     name: Pattern,
-    /// Format of the frames: ppm, png or exr (the same numbers, 0–1, not rounded)
+    /// Format of the frames: ppm, png or exr (the same values, 0–1, unrounded)
     #[arg(long, default_value = "ppm", value_parser = parse_format, value_hint = ValueHint::Other)]
     format: Format,
     #[command(flatten)]
@@ -42,25 +42,25 @@ struct SequenceArgs {
 
 fn antialias_help() -> String {
     let methods = Sampling::syntax();
-    format!("How edges are smoothed: {methods} [default: the scene's own]")
+    format!("Antialiasing of edges: {methods} [default: the scene's own]")
 }
 
 #[derive(Debug, Args)]
 pub struct ExportArgs {
     #[command(flatten)]
     what: SequenceArgs,
-    /// The folder that the frames go to
+    /// Folder for the frames
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// A video to make of the frames: .mp4, .mov and .mkv by ffmpeg, .gif and .apng without it
+    /// Video to make from the frames: .mp4, .mov and .mkv need ffmpeg, .gif and .apng do not
     #[arg(long, value_name = "FILE")]
     video: Option<PathBuf>,
     #[command(flatten)]
     threads: ThreadsArgs,
-    /// Only say which frames would be made, and how many
+    /// Only list which frames would be made, and how many
     #[arg(long)]
     dry_run: bool,
-    /// Tell the progress in the lines that Open Job Description runners read
+    /// Report progress in the format that Open Job Description runners read
     #[arg(long)]
     openjd: bool,
 }
@@ -69,7 +69,7 @@ pub struct ExportArgs {
 pub struct JobArgs {
     #[command(flatten)]
     what: SequenceArgs,
-    /// The template to write (YAML); the scene is copied beside it if it is elsewhere, or has meshes that are files
+    /// Template to write (YAML); the scene is copied next to it if it is in another folder or uses mesh files
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
@@ -149,7 +149,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         say(&format!("{}: a video of {frames}", path.display()));
     }
     say(&format!(
-        "{}: {} written, {} there already, {seconds:.1} s, {:.1} frames/s",
+        "{}: {} written, {} already there, {seconds:.1} s, {:.1} frames/s",
         args.output.display(),
         counted(done.written, "frame"),
         done.kept,
@@ -172,7 +172,8 @@ fn export(
     threads: &Threads,
     reporter: &mut ProgressReporter,
 ) -> Result<Exported, CliError> {
-    let hint = "; what is done stays: once that is put right, the same command goes on from there";
+    let hint =
+        "; finished frames are kept: once this is fixed, the same command resumes the export";
     let failed = |error: ExportError| CliError::failed(format!("{error}{hint}"));
     let mut exporting = Exporting::new(sequence)?.side_by_side();
     let control = RenderControl::default();
@@ -283,13 +284,13 @@ pub fn run_job(args: &JobArgs) -> Result<(), CliError> {
     if job.is_copied {
         let scene = job.scene.display();
         say(&format!(
-            "{scene}: the scene, with everything that it needs"
+            "{scene}: a copy of the scene, with everything it needs"
         ));
     }
     for (file, backup) in job.replaced {
         let (file, backup) = (file.display(), backup.display());
         say(&format!(
-            "{file} held something else, which is kept as {backup}; whatever reads it gets this one now"
+            "{file} was replaced: its old content is kept as {backup}, and whatever reads {file} gets the new one now"
         ));
     }
     Ok(())

@@ -34,7 +34,7 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
         let _ = writeln!(
             std::io::stderr(),
             "glint: no window: {reason}. A window needs a display (DISPLAY or WAYLAND_DISPLAY) and the packages {PACKAGES}.\n\
-             glint: all commands need none of these, such as `glint render` and `glint export`; tracing the scene to a picture instead."
+             glint: commands such as `glint render` and `glint export` work without them; tracing the scene to a picture instead."
         );
     }
     let request = RenderRequest::still(&scene);

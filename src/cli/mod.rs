@@ -57,26 +57,26 @@ use crate::scene::{Document, Scene};
     name = "glint",
     version,
     about = "A scene editor whose viewport is a CPU ray tracer",
-    long_about = "A scene editor whose viewport is a CPU ray tracer.\n\nWithout a command, opens the editor on SCENE (on the demo scene if there is none).",
+    long_about = "A scene editor whose viewport is a CPU ray tracer.\n\nWithout a command, opens the editor on SCENE (the demo scene if none is given).",
     args_conflicts_with_subcommands = true
 )]
 struct CliArgs {
     /// The scene to open in the editor (RON)
     scene: Option<PathBuf>,
-    /// Write a picture of the window once it is complete (PNG, PPM or EXR), and quit
+    /// Save a picture of the window once it is complete (PNG, PPM or EXR), and quit
     #[arg(long, value_name = "IMAGE")]
     screenshot: Option<PathBuf>,
-    /// With --screenshot: open the window of exports first
+    /// With --screenshot: open the export window first
     #[arg(long, requires = "screenshot")]
     exports: bool,
-    /// Open the editor until its first traced picture is on the screen, print as JSON how long that took and how much
-    /// memory the program has, and quit
+    /// Open the editor, wait until its first traced picture is on the screen, print the time that took and the memory
+    /// used as JSON, and quit
     #[arg(long, conflicts_with = "screenshot")]
     stats_start: bool,
-    /// Put Glint into the menu of the desktop, with its icon, manual and shell completions, for this user
+    /// Install a menu entry, icon, manual page and shell completions for the current user
     #[arg(long, exclusive = true)]
     install_desktop: bool,
-    /// With --screenshot: select the object or light of this name first; may be given more than once
+    /// With --screenshot: select the object or light with this name first; may be repeated
     #[arg(long, value_name = "NAME", requires = "screenshot")]
     select: Vec<String>,
     #[command(subcommand)]
@@ -85,23 +85,23 @@ struct CliArgs {
 
 #[derive(Debug, Subcommand)]
 enum CliCommand {
-    /// Trace a scene into a picture
+    /// Trace a scene and save the picture
     Render(render::RenderArgs),
-    /// Write the frames of an animation, going on where it was left
+    /// Write the frames of an animation, resuming where an earlier export stopped
     Export(export::ExportArgs),
     /// Write a job for a render farm (Open Job Description)
     Job(export::JobArgs),
     /// Validate scene files
     Check(check::CheckArgs),
-    /// Make a scene of a mesh file, or a file for POV-Ray of a scene
+    /// Convert a mesh file to a scene, or a scene to a POV-Ray file
     Convert(convert::ConvertArgs),
-    /// Say what a scene needs of the tracer, and why
+    /// Show what the tracer computes for a scene, what it skips, and why
     Plan(plan::PlanArgs),
-    /// Chart time against error for every way of tracing a scene
+    /// Chart time against error of every rendering method
     Chart(chart::ChartArgs),
-    /// Say how often every formula fails, and where most
+    /// Show how often each formula fails, and where most
     Stability(stability::StabilityArgs),
-    /// Let POV-Ray draw the same scene, and say how far its picture differs
+    /// Render a scene with POV-Ray too, and show how far its picture differs
     Referee(referee::RefereeArgs),
 }
 
@@ -119,7 +119,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
     };
     if let Some(name) = unknown_command(&words) {
         if Path::new(&name).is_file() {
-            let sentence = format!("the window opens one scene: leave out what follows {name:?}");
+            let sentence = format!("the editor opens one scene: remove what follows {name:?}");
             return done(Err(CliError::usage(sentence)));
         }
         let commands = CliArgs::command();
@@ -129,7 +129,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             .collect();
         let command_names = command_names.join(", ");
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; there are {command_names}, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; the commands are {there}, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {
@@ -200,7 +200,7 @@ impl CliArgs {
         match self.select.iter().find(|name| !names.contains(name)) {
             None => Ok(()),
             Some(name) => Err(CliError::usage(format!(
-                "there is no object and no light named {name:?} to be selected"
+                "there is no object or light named {name:?} to select"
             ))),
         }
     }

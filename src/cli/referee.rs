@@ -24,7 +24,7 @@ pub struct RefereeArgs {
     scene: PathBuf,
     #[command(flatten)]
     size: SizeArgs,
-    /// Write the differences, 64 times enlarged, to this picture (PNG, PPM or EXR)
+    /// Save the differences, magnified 64 times, as this picture (PNG, PPM or EXR)
     #[arg(short, long, value_name = "IMAGE")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -64,7 +64,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         .count();
     let share = same as f64 * 100.0 / differences.len().max(1) as f64;
     say(&format!(
-        "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, all but {}; the worst is off by {worst}",
+        "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, all but {}; the largest difference is {worst}",
         ours.width,
         ours.height,
         differences.len() - same,
@@ -77,7 +77,7 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     ));
     if share < 100.0 {
         for difference in povray_differences(&scene) {
-            say(&format!("known to differ: {difference}"));
+            say(&format!("known difference: {difference}"));
         }
     }
     if let Some(path) = &args.output {

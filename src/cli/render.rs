@@ -29,36 +29,36 @@ use crate::worker::Background;
 pub struct RenderArgs {
     /// The scene file (RON)
     scene: PathBuf,
-    /// The picture to write; ends in .png, .ppm or .exr (the same numbers, 0–1, not rounded). With --stats there need be none
+    /// The picture to write, ending in .png, .ppm or .exr (the same values, 0–1, unrounded); optional with --stats
     #[arg(short, long, value_name = "IMAGE", required_unless_present = "stats")]
     output: Option<PathBuf>,
     #[command(flatten)]
     size: SizeArgs,
-    /// Projection in place of the scene's own
+    /// Projection to use instead of the scene's own
     #[arg(long)]
     camera: Option<CameraArg>,
     #[command(flatten)]
     settings: SettingArgs,
-    /// Measure samplings on this picture, and take the cheapest whose error is at most this: 55dB, or an RMSE (linear, 0–1); another time it may be another one
+    /// Measure samplings on this picture and use the cheapest one whose error is at most this: 55dB, or an RMSE (linear, 0–1); another run may choose a different one
     #[arg(long, value_name = "ERROR", value_parser = parse_error, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
-    /// Measure samplings on this picture, and take the closest that takes at most so long: 16ms, 2s, or a number of milliseconds; the measuring takes time of its own
+    /// Measure samplings on this picture and use the most accurate one within this time: 16ms, 2s, or a number of milliseconds; measuring takes extra time
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]
     budget: Option<Duration>,
-    /// Instruction set of the tracer; all give the same picture [default: the widest of this processor]
+    /// Instruction set of the tracer; all give the same picture [default: the widest that this processor has]
     #[arg(long, value_name = "LEVEL", value_parser = parse_lanes, value_hint = ValueHint::Other)]
     lanes: Option<Level>,
-    /// Frame of the animation, from 1 [default: the scene's own camera and values]
+    /// Frame of the animation, counted from 1 [default: the scene's own camera and values]
     #[arg(long, value_name = "N", value_parser = parse_frame, allow_negative_numbers = true)]
     frame: Option<u64>,
     #[arg(long, value_name = "ASPECT", value_parser = parse_aspect, help = aspect_help(), value_hint = ValueHint::Other)]
     show: Option<Aspect>,
     #[command(flatten)]
     threads: ThreadsArgs,
-    /// Trace so many times; the statistics take the median of all runs but the first, which makes meshes ready for them
+    /// Number of times to trace; the statistics show the median of all runs except the first, which prepares meshes for the others
     #[arg(long, default_value = "1", value_parser = whole_number::<1, MAX_TIMES>, allow_negative_numbers = true)]
     repeat: u32,
-    /// Print one JSON object about the trace on stdout
+    /// Print statistics as one JSON object to stdout
     #[arg(long)]
     stats: bool,
 }
@@ -161,7 +161,7 @@ fn parse_aspect(word: &str) -> Result<Aspect, String> {
 
 fn aspect_help() -> String {
     format!(
-        "Show one thing in place of the picture: {}",
+        "Show one aspect instead of the picture: {}",
         Aspect::words()
     )
 }
@@ -196,7 +196,7 @@ impl RenderArgs {
         };
         let (mut planner, control) = (Planner::default(), RenderControl::default());
         let chosen = threads.run(|| choose(scene, request, goal, &mut planner, &control));
-        let no_choice = || CliError::failed("the measuring ended without a choice");
+        let no_choice = || CliError::failed("measuring ended without a choice");
         chosen.ok_or_else(no_choice).map(Some)
     }
 

@@ -28,7 +28,7 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     match missing_meshes(path, &document.scene).first() {
         None => Ok(document),
         Some(problem) => {
-            let sentence = format!("{problem}, and no frame is made without it");
+            let sentence = format!("{problem}; no frame is made without it");
             Err(CliError::failed(sentence))
         }
     }

@@ -14,14 +14,14 @@ use crate::lab::stability::{cells_csv, maps, summary};
 
 #[derive(Debug, Args)]
 pub struct StabilityArgs {
-    /// Write every cell of every map to this file
+    /// Write every cell of every map to this CSV file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draw the maps into this picture (PNG, PPM or EXR)
+    /// Save the maps as this picture (PNG, PPM or EXR)
     #[arg(long, value_name = "IMAGE")]
     png: Option<PathBuf>,
-    /// Try so many times more rays than for a first look, in the maps of single rays; those of pictures take the square
-    /// root of that, or stay as they are
+    /// Try this many times more rays in the maps of single rays; maps of pictures use the square root of this factor, or
+    /// stay as they are
     #[arg(long, default_value = "1", value_parser = whole_number::<1, MAX_TIMES>, allow_negative_numbers = true)]
     effort: u32,
 }

@@ -31,8 +31,9 @@ pub fn check_table(path: Option<&Path>) -> Result<(), CliError> {
     };
     if has_ending(path, "ron") || is_mesh_file(path) || Format::of_path(path).is_ok() {
         let path = path.display();
-        let sentence =
-            format!("{path}: figures are a table, and no scene, mesh or picture; end it in .csv");
+        let sentence = format!(
+            "{path}: measurements are written as a table, not as a scene, mesh or picture; use a name ending in .csv"
+        );
         return Err(CliError::usage(sentence));
     }
     Ok(check_place(path)?)

@@ -297,7 +297,7 @@ impl Editor {
         (self.is_dirty, self.own_file) = (false, OwnFile::Whole);
         let kept = backup.map_or(String::new(), |backup| {
             format!(
-                "; the file that was there had other comments, and is kept as {}",
+                "; the previous file had other comments and is kept as {}",
                 backup.display()
             )
         });

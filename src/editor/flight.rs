@@ -58,7 +58,7 @@ impl Editor {
                 self.leave_still();
             }
             Time::Record if is_making_keys => {
-                self.notify("The last flight is still becoming keys".to_owned());
+                self.notify("The last flight is still being reduced to keys".to_owned());
             }
             Time::Record => {
                 let camera = self.animation_state.shown.camera.clone();
@@ -71,7 +71,9 @@ impl Editor {
                 let camera = &self.animation_state.shown.camera;
                 self.animation_state.timeline.sample(now, camera, angles);
                 if self.timeline().is_full() {
-                    self.notify("The recording is as long as one can be, and ends here".to_owned());
+                    self.notify(
+                        "The recording has reached its maximum length and ends here".to_owned(),
+                    );
                     self.apply_time(Time::Stop);
                 }
             }
@@ -192,7 +194,7 @@ impl Editor {
         let (take, interpolated) = resampled(take);
         if interpolated * STEPPED_SHARE > take.samples.len() {
             self.notify(format!(
-                "The mouse moved in steps: {interpolated} of {} samples are taken from the way between them",
+                "The mouse moved in steps: {stepped} of {} samples are interpolated",
                 take.samples.len()
             ));
         }
@@ -215,7 +217,7 @@ impl Editor {
         let key_count = counted(keys.len(), "key");
         let replaced = match self.scene.animation.keys.len() {
             0 => String::new(),
-            old => format!(" in place of the {old} before, which Undo brings back"),
+            old => format!(", replacing the previous {old} (undo brings them back)"),
         };
         let timeline = &self.animation_state.timeline;
         let worst = timeline.worst.map_or(0.0, |worst| worst.deviation);

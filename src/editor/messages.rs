@@ -90,7 +90,7 @@ impl Editor {
 
     /// Reports that another program has overwritten a mesh file with something that is no mesh.
     pub(super) fn report_broken_mesh(&mut self, why: &str) {
-        let text = format!("{why}; what was read of it before stays, and is saved with the scene");
+        let text = format!("{why}; the version read before is kept and saved with the scene");
         self.report_error_in(BROKEN, text);
     }
 
@@ -117,7 +117,7 @@ impl Editor {
         let targets = tracks.map(|track| &track.target);
         let lost = targets.filter(|target| !kept.contains(target));
         let keys = listed(lost.map(Target::name));
-        keys.map(|names| format!("keys have gone as well ({names}); undo brings them back"))
+        keys.map(|names| format!("keys were deleted too ({names}); undo brings them back"))
     }
 
     /// Returns clauses about lost appearance: color packs of all joined objects but the first, smoothness, and which
@@ -130,8 +130,8 @@ impl Editor {
         let own_pack = pack(first).map_or("", String::as_str);
         let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
         let packs = packs.into_iter().filter(|pack| *pack != own_pack).cloned();
-        let packs =
-            listed(packs).map(|names| format!("all of it wears {own_pack}, what wore {names} too"));
+        let packs = listed(packs)
+            .map(|names| format!("all of it uses {own_pack} now, including what used {names}"));
         let flat = others.is_empty().then_some(*first).filter(|&index| {
             let object = self.scene.objects.get(index);
             object.is_some_and(Object::is_smooth)
@@ -143,7 +143,7 @@ impl Editor {
         let (seen, hidden): (Vec<_>, Vec<_>) = objects.partition(|object| object.visible);
         let hidden = hidden.iter().map(|object| object.name.clone());
         let hidden = listed(hidden).filter(|_| !seen.is_empty());
-        let hidden = hidden.map(|names| format!("what was hidden is seen now ({names})"));
+        let hidden = hidden.map(|names| format!("what was hidden is visible now ({names})"));
         packs.into_iter().chain(flat).chain(hidden).collect()
     }
 

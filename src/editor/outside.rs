@@ -64,7 +64,7 @@ impl Editor {
         self.selection = self.followed(&theirs);
         self.set_scene(theirs);
         self.notify_of_step(format!(
-            "{} was changed by another program and read anew; undo brings yours back",
+            "{} was changed by another program and reloaded; undo brings yours back",
             self.title()
         ));
         self.report_missing_meshes();
@@ -113,9 +113,7 @@ impl Editor {
             [one, more @ ..] => format!("{one} and {} more were", more.len()),
         };
         if !subject.is_empty() {
-            self.notify(format!(
-                "{subject} changed by another program and read anew"
-            ));
+            self.notify(format!("{subject} changed by another program and reloaded"));
         }
         self.report_missing_meshes();
     }
@@ -145,18 +143,15 @@ impl Editor {
         let elsewhere = &elsewhere - &lost;
         let clause = |names: BTreeSet<&str>, why| {
             let names = names.into_iter().collect::<Vec<_>>().join(", ");
-            let text = format!("; what was in {names} is in the scene file now: {why}");
+            let text = format!("; the contents of {names} are in the scene file now: {why}");
             if names.is_empty() {
                 String::new()
             } else {
                 text
             }
         };
-        clause(lost, "that is gone, or cannot be read any more")
-            + &clause(
-                elsewhere,
-                "that lies in another folder, and is not followed any more",
-            )
+        clause(lost, "missing, or no longer readable")
+            + &clause(elsewhere, "in another folder, and no longer followed")
     }
 
     /// Returns a copied part of the scene with the current contents of mesh files.

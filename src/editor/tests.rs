@@ -118,7 +118,7 @@ fn colors_that_joining_loses_are_said_until_it_is_undone() {
     assert_eq!(
         (said.text.as_str(), said.about),
         (
-            "Join 2 objects: all of it wears tetrahedron, what wore tetrahedron 2 too",
+            "Join 2 objects: all of it uses tetrahedron now, including what used tetrahedron 2",
             STEP
         )
     );
@@ -401,7 +401,7 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
     assert_eq!(editor.scene().mesh_problems().count(), 1);
     editor.save(&there.path().join("s.ron")).expect("saved");
     let said = &editor.messages.last().expect("a message").text;
-    let lost = "what was in roof.obj is in the scene file now: that lies in another folder";
+    let lost = "the contents of roof.obj are in the scene file now: in another folder";
     assert!(said.contains(lost), "{said}");
     assert_eq!(editor.scene().mesh_problems().count(), 0);
     assert_eq!(editor.scene().mesh_paths().len(), 1);

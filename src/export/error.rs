@@ -42,7 +42,7 @@ pub enum ExportError {
     },
     /// A frame file was replaced by another export.
     #[error(
-        "{path} is not the frame that was made, any more: another export has put it there; give each a folder of its own",
+        "{path} is no longer the frame that was made: another export has replaced it; give each export its own folder",
         path = .path.display()
     )]
     Changed {
@@ -56,17 +56,17 @@ pub enum ExportError {
 #[non_exhaustive]
 pub enum VideoError {
     /// The extension is not that of a known video format.
-    #[error("{0:?} ends in no known video format; end it in .mp4, .mov, .mkv, .gif or .apng")]
+    #[error("{0:?} does not end in a known video format; use .mp4, .mov, .mkv, .gif or .apng")]
     Unknown(String),
     /// Making the video was cancelled.
-    #[error("the video was stopped, and is not there; its frames are")]
+    #[error("the video was stopped and is not written; its frames are")]
     Stopped,
     /// No threads could be started to make it.
     #[error(transparent)]
     Threads(#[from] PoolError),
     /// ffmpeg was not found.
     #[error(
-        "ffmpeg is not installed, or not on the PATH; the frames are there, and {how}\n.gif and .apng need no ffmpeg"
+        "ffmpeg is not installed, or not on the PATH; the frames are complete, and {how}\n.gif and .apng do not need ffmpeg"
     )]
     NoFfmpeg {
         /// How to make the video of the frames.
@@ -86,7 +86,7 @@ pub enum VideoError {
     },
     /// A frame file was replaced by one of another size.
     #[error(
-        "{path} is {width}×{height} pixels now: another export has put it there; give each a folder of its own",
+        "{path} is now {width}×{height} pixels: another export has replaced it; give each export its own folder",
         path = .path.display(), width = .size.0, height = .size.1
     )]
     Replaced {

@@ -314,7 +314,7 @@ impl Exporting {
         }
         outcome?;
         if self.in_flight > 0 {
-            let fault = io::Error::other("a thread that writes stopped with a fault of its own");
+            let fault = io::Error::other("a writer thread stopped because of an internal error");
             return Err(disk_error(&self.sequence.folder, fault));
         }
         if self.done.so_far() == self.done.total {

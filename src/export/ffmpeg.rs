@@ -66,7 +66,7 @@ pub fn make_with_ffmpeg(
     } else if !status.success() {
         String::new()
     } else if !took_all_frames {
-        "it ended before it had all frames\n".to_owned()
+        "it ended before it had received all frames\n".to_owned()
     } else if !is_written() {
         "it wrote nothing\n".to_owned()
     } else {
@@ -122,8 +122,8 @@ fn feed(
 /// Tells how to make the video once ffmpeg is installed: by a command line if one suffices.
 fn advice_without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
-        Some(command) => format!("this makes the video of them:\n{command}"),
-        None => "exporting once more makes the video of them when ffmpeg is there".to_owned(),
+        Some(command) => format!("this command makes the video from them:\n{command}"),
+        None => "exporting again makes the video from them once ffmpeg is installed".to_owned(),
     }
 }
 

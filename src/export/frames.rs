@@ -26,9 +26,7 @@ pub enum FramesError {
         text: String,
     },
     /// There are more frames than can be handled at once.
-    #[error(
-        "there may be at most {MAX_FRAMES} frames at once: ask for some of them, such as 1-{MAX_FRAMES}"
-    )]
+    #[error("there can be at most {MOST} frames at once: choose some of them, such as 1-{MOST}")]
     TooMany,
 }
 

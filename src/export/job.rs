@@ -30,7 +30,7 @@ pub enum JobError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The template would have the name of the scene.
-    #[error("{path} is the scene: give the job another name, such as {other}", path = .path.display(), other = .other.display())]
+    #[error("{path} is the scene file: give the job another name, such as {other}", path = .path.display(), other = .other.display())]
     IsScene {
         /// Where the template was to go.
         path: PathBuf,
@@ -39,7 +39,7 @@ pub enum JobError {
     },
     /// The text of the frame set is longer than a job can hold.
     #[error(
-        "the frames {0:.40}… are too many pieces for one job: make a job of each, or one of all frames"
+        "the frames {0:.40}… have too many ranges for one job: make several jobs, or one of all frames"
     )]
     TooManyPieces(String),
 }

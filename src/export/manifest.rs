@@ -43,7 +43,7 @@ impl Manifest {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 if path.is_symlink() {
-                    return Err(io::Error::other("it is a link that leads nowhere"));
+                    return Err(io::Error::other("it is a broken link"));
                 }
                 String::new()
             }

@@ -33,25 +33,25 @@ impl Pattern {
             })
         };
         let Some((before, rest)) = text.split_once('%') else {
-            return wrong("a name needs %d where the number goes");
+            return wrong("the name needs %d where the number goes");
         };
         let Some((digits, after)) = rest.split_once('d') else {
-            return wrong("behind % comes d, or the number of digits and d");
+            return wrong("% must be followed by d, or by the number of digits and d");
         };
         let Some(digits) = digits_of(digits) else {
-            return wrong("behind % comes d, or the number of digits (at most 12) and d");
+            return wrong("% must be followed by d, or by the number of digits (at most 12) and d");
         };
         if after.contains('%') {
-            return wrong("a name has one % only");
+            return wrong("the name can have only one %");
         }
         if text.starts_with(UNFINISHED) {
-            return wrong("such a name would be taken for that of an unfinished file");
+            return wrong("the name would be mistaken for that of an unfinished file");
         }
         if text.contains(['/', '\\']) {
-            return wrong("a name has no folders in it");
+            return wrong("the name must not contain folders");
         }
         if text.chars().any(char::is_control) {
-            return wrong("a name has no control characters in it");
+            return wrong("the name must not contain control characters");
         }
         Ok(Self {
             before: before.to_owned(),

@@ -43,7 +43,7 @@ pub enum PovrayError {
     Failed(String),
     /// Its files could not be written or read.
     #[error(
-        "the files of POV-Ray go to the folder for temporary files (TMPDIR): {path}: {source}",
+        "cannot use the folder for temporary files (TMPDIR), which POV-Ray's files go to: {path}: {source}",
         path = .path.display()
     )]
     Disk {
@@ -53,7 +53,7 @@ pub enum PovrayError {
         source: io::Error,
     },
     /// Its picture could not be read.
-    #[error("cannot read what POV-Ray has drawn: {0}")]
+    #[error("cannot read the picture by POV-Ray: {0}")]
     Picture(#[from] image::ImageError),
 }
 
@@ -265,10 +265,10 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
         pack.is_some_and(|pack| pack.reflective)
     };
     let clipped = visible().any(is_mirror).then_some(
-        "what is brighter than white is white in mirrors here, and brighter than white there",
+        "in mirrors, colours brighter than white are limited to white in Glint, and not in POV-Ray",
     );
     let lifted = visible().any(Object::is_smooth).then_some(
-        "light ends on the curved surface of smooth meshes here, and on their flat faces there",
+        "on smooth meshes, light ends at the curved surface in Glint, and at the flat faces in POV-Ray",
     );
     let is_drawn_by_povray = |object: &Object| {
         let size = object
@@ -278,7 +278,7 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
         size.is_none_or(|size| DRAWN_SIZES.contains(&size))
     };
     let undrawn = (!visible().all(is_drawn_by_povray)).then_some(
-        "what is smaller than a hundred-thousandth of a unit, or larger than a million, is seen here, and may not be there",
+        "objects smaller than a hundred-thousandth of a unit, or larger than a million, may be missing in POV-Ray",
     );
     let centre = scene.middle().unwrap_or_default();
     let is_visible_overlap = |found: &Coincidence| {
@@ -287,7 +287,7 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     };
     let found = coincidences(&scene.objects, centre);
     let coincident = found.iter().any(is_visible_overlap).then_some(
-        "where surfaces lie in each other, the first in the list is seen here, and either of them there",
+        "where surfaces coincide, Glint shows the first in the list, and POV-Ray either of them",
     );
     let all = [clipped, lifted, undrawn, coincident];
     all.into_iter().flatten().collect()
@@ -402,7 +402,7 @@ mod tests {
         let mut scene = Scene::demo();
         let say_so = |scene: &Scene| {
             let said = povray_differences(scene);
-            said.iter().any(|words| words.contains("lie in each other"))
+            said.iter().any(|words| words.contains("surfaces coincide"))
         };
         assert!(!say_so(&scene));
         let copy = Object {

@@ -26,8 +26,7 @@ use crate::words::counted;
 const MAX_PIXELS_AT_ONCE: usize = 1 << 26;
 
 /// The message about a video of a [`Sequence`] that is a loop.
-pub const LOOP_HINT: &str =
-    "its last frame is the first again: it loops without a stop if that is left out";
+pub const LOOP_HINT: &str = "its last frame repeats the first: leave it out for a smooth loop";
 
 /// The frames to export, and where to.
 #[derive(Clone, Debug)]

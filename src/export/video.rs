@@ -131,11 +131,11 @@ impl Video {
         let too_long = |kind: &str, longest: f64| {
             let seconds = 1.0 / fps;
             unfit(format!(
-                "{kind} shows a frame for at most {longest} seconds, not for {seconds:.0}; choose more frames per second, or .mkv"
+                "{kind} can show a frame for at most {longest} seconds, not for {seconds:.0}; choose more frames per second, or .mkv"
             ))
         };
         let uneven = (!sequence.frames.are_even()).then(|| {
-            "the frames are not equally far apart: the video shows each of them for as long"
+            "the frames are not equally far apart, but the video shows each of them for the same time"
                 .to_owned()
         });
         let with_uneven = |remark: Option<String>| {
@@ -144,12 +144,12 @@ impl Video {
         };
         match self {
             Self::H264 | Self::Lossless if width.min(height) < 2 => unfit(format!(
-                "an .mp4 or .mkv is at least 2 × 2 pixels large, not {width} × {height}; .gif, .apng and .mov are as large as the frames"
+                "an .mp4 or .mkv needs at least 2 × 2 pixels, not {width} × {height}; .gif, .apng and .mov can have any size"
             )),
             Self::H264 if width % 2 + height % 2 > 0 => {
                 let [width, height] = [width, height].map(|side| side / 2 * 2);
                 with_uneven(Some(format!(
-                    "the sides of an .mp4 are even: it shows {width} × {height} pixels"
+                    "an .mp4 has an even width and height: it shows {width} × {height} pixels"
                 )))
             }
             Self::Gif if 1.0 / fps > MAX_GIF_DELAY => too_long("a .gif", MAX_GIF_DELAY),
@@ -157,7 +157,7 @@ impl Video {
             Self::Gif => with_uneven(match left_out(fps, count) {
                 0 => None,
                 out => Some(format!(
-                    "a .gif shows at most 50 frames a second: it leaves out {out} of {count}"
+                    "a .gif shows at most 50 frames per second: {out} of {count} are left out"
                 )),
             }),
             _ => with_uneven(None),

@@ -28,7 +28,7 @@ pub enum Format {
 
 /// A file name whose extension is not that of a known format.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{name:?} ends in no known picture format; end it in .png, .ppm or .exr")]
+#[error("{name:?} does not end in a known picture format; use .png, .ppm or .exr")]
 pub struct FormatError {
     name: String,
 }
@@ -205,7 +205,7 @@ mod tests {
         let refused = Format::of_path(Path::new("b.jpg")).expect_err("not a known format");
         assert_eq!(
             refused.to_string(),
-            r#""b.jpg" ends in no known picture format; end it in .png, .ppm or .exr"#
+            r#""b.jpg" does not end in a known picture format; use .png, .ppm or .exr"#
         );
     }
 }

@@ -28,6 +28,6 @@ impl<P> Rows<P> for &Raster<P> {
 pub fn unwanted() -> io::Error {
     io::Error::new(
         io::ErrorKind::Interrupted,
-        "nobody wants the picture any more",
+        "the picture is no longer needed",
     )
 }

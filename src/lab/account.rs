@@ -26,24 +26,23 @@ pub fn account(study: &Study, index: usize) -> String {
 fn what(candidate: &Candidate, default: &Candidate) -> String {
     match candidate.family {
         Family::Original => {
-            return "Every step as in the original program, and nothing left out that the scene does not need."
+            return "Every step as in the original program, without skipping what the scene does not need."
                 .to_owned();
         }
         Family::Referee => {
-            return "Another engine, which shares no code with this one (povray.org), draws the picture."
+            return "The picture by POV-Ray (povray.org), an independent renderer that shares no code with Glint."
                 .to_owned();
         }
         Family::Resolution => {
             let share = candidate.upscale * candidate.upscale;
             return format!(
-                "The default in one pixel of {share}, scaled up evenly: sharp edges become soft."
+                "The default for one pixel in {share}, scaled up smoothly: sharp edges become soft."
             );
         }
         _ => {}
     }
     if candidate.name == UNCULLED {
-        return "Every primitive is tested for every ray, as if nobody knew where they are."
-            .to_owned();
+        return "Every primitive is tested for every ray, wherever it is.".to_owned();
     }
     let (own, usual) = (candidate.render.chosen(), default.render.chosen());
     let differing = own
@@ -56,17 +55,15 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
         default.render.reflection_limit,
     );
     if bounces != usual {
-        parts.push(format!(
-            "light is mirrored {bounces} times at most, not {usual}"
-        ));
+        parts.push(format!("reflection limit of {bounces} instead of {usual}"));
     }
     if candidate.render.sphere != SphereMethod::Stable {
         parts.push(format!(
-            "what it hits wrongly shows, since as in \"{UNCULLED}\" every primitive is tested"
+            "its wrong hits are visible, since every primitive is tested, as in \"{UNCULLED}\""
         ));
     }
     if parts.is_empty() {
-        return "The default: of every step the way that holds everywhere.".to_owned();
+        return "The default: for each step, the method that is reliable everywhere.".to_owned();
     }
     format!("{}.", capitalised(&parts.join("; ")))
 }
@@ -83,13 +80,15 @@ fn compared(measured: &Measurement, default: &Measurement) -> Option<String> {
     );
     let speed = speed.unwrap_or("as fast as the default".to_owned());
     let closeness =
-        ratio_in_words(error, " closer", " farther off").unwrap_or("as close".to_owned());
+        ratio_in_words(error, " smaller", " larger").unwrap_or("about the same".to_owned());
     let rays = match rays {
         ratio if (ratio - 1.0).abs() <= SAME_RATIO => "as many rays".to_owned(),
-        ratio if ratio < 1.0 => format!("{ratio:.2} of its rays"),
-        ratio => format!("{} its rays", times(ratio)),
+        ratio if ratio < 1.0 => format!("{ratio:.2}× as many rays"),
+        ratio => format!("{} as many rays", times(ratio)),
     };
-    Some(format!("Here it is {speed}, with {rays}, and {closeness}."))
+    Some(format!(
+        "On this scene it is {speed}, with {rays}, and its error is {closeness}."
+    ))
 }
 
 /// A ratio in words, with `less` or `more` added; `None` if it is about 1.
@@ -159,9 +158,9 @@ mod tests {
         };
         let one = account(&study, place("none"));
         assert!(
-            one.contains("of its rays") && one.contains("farther off"),
+            one.contains("× as many rays") && one.contains("larger"),
             "{one}"
         );
-        assert!(!account(&study, 0).contains("Here it is"));
+        assert!(!account(&study, 0).contains("On this scene it is"));
     }
 }

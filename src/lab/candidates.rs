@@ -32,7 +32,7 @@ impl Family {
         (Self::Precision, "precision"),
         (Self::Resolution, "resolution"),
         (Self::Original, "the original program"),
-        (Self::Referee, "another engine"),
+        (Self::Referee, "independent renderer"),
     ];
 }
 
@@ -238,7 +238,7 @@ impl Candidate {
     /// Its settings, in the words of the command line.
     pub fn words(&self) -> String {
         if self.family == Family::Referee {
-            return "one ray per pixel, double precision; the time it takes to start and to read the scene is left out".to_owned();
+            return "one ray per pixel, double precision; time to start and to read the scene is not counted".to_owned();
         }
         let chosen = self.render.chosen().into_iter();
         let ids = chosen.map(|chosen| format!("{} {}", chosen.setting.name, chosen.id));

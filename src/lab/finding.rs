@@ -29,13 +29,13 @@ pub fn finding(study: &Study, name: &str) -> String {
         let way = &study.measurements[index].candidate.name;
         let [cost, own] = [costs[index].0, ms].map(short_number);
         return format!(
-            "{name}: {way} is as close as the default, in {cost}\u{a0}ms and not {own}"
+            "{name}: {way} is as accurate as the default, in {cost}\u{a0}ms instead of {own}"
         );
     }
     let ms = short_number(ms);
     if error <= EIGHT_BIT_FLOOR {
         return format!(
-            "{name}: on average, the default is below what 8 bits show at {ms}\u{a0}ms"
+            "{name}: the default's average error is below 8-bit precision in {ms}\u{a0}ms"
         );
     }
     let decibels = decibels(error);
@@ -43,17 +43,13 @@ pub fn finding(study: &Study, name: &str) -> String {
         let way = &study.measurements[index].candidate.name;
         let cost = short_number(costs[index].0);
         return format!(
-            "{name}: on average, {way} is below what 8 bits show at {cost}\u{a0}ms; the default has {decibels:.0}\u{a0}dB at {ms}"
+            "{name}: the average error of {way} is below 8-bit precision in {cost}\u{a0}ms; the default has {decibels:.0}\u{a0}dB in {ms}"
         );
     }
     let ways = front_of(study).len();
-    let are_worth = if ways == 1 {
-        "is worth its"
-    } else {
-        "are worth their"
-    };
+    let are = if ways == 1 { "is" } else { "are" };
     format!(
-        "{name}: the default has {decibels:.0}\u{a0}dB at {ms}\u{a0}ms, and {} {are_worth} time",
-        counted(ways, "way")
+        "{name}: the default has {decibels:.0}\u{a0}dB in {ms}\u{a0}ms; {} {are} on the Pareto front",
+        counted(ways, "method")
     )
 }

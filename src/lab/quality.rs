@@ -56,9 +56,9 @@ impl Choice {
         let goal = match (self.goal, self.is_met) {
             (Goal::Within(error), true) => format!("the cheapest within {}", level(error)),
             (Goal::Within(error), false) => {
-                format!("the closest; none is within {}", level(error))
+                format!("the most accurate; none is within {}", level(error))
             }
-            (Goal::Budget(time), true) => format!("the closest within {}", millis(time)),
+            (Goal::Budget(time), true) => format!("the most accurate within {}", millis(time)),
             (Goal::Budget(time), false) => {
                 format!("the cheapest; none is within {}", millis(time))
             }

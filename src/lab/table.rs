@@ -15,7 +15,7 @@ pub fn table(study: &Study) -> String {
     order.sort_by(|&a, &b| costs[a].0.total_cmp(&costs[b].0));
     let mut text = format!(
         "  {:<22} {:>9} {:>7} {:>9} {:>10} {:>7} {:>7} {:>8}\n",
-        "way", "ms", "spread", "rays/px", "RMSE", "dB", "max", "> 4/255"
+        "method", "ms", "spread", "rays/px", "RMSE", "dB", "max", "> 4/255"
     );
     for index in order {
         let dot = &study.measurements[index];
@@ -41,12 +41,12 @@ pub fn table(study: &Study) -> String {
     if let Some(truth) = &study.reference {
         let _ = writeln!(
             text,
-            "{width}×{height}; reference: f64, {REFERENCE_SAMPLES} samples per pixel, itself off by {:.1e}; 8 bits cannot show less than {:.1e}",
+            "{width}×{height}; reference: f64, {REFERENCE_SAMPLES} samples per pixel, with an error of {:.1e}; 8 bits cannot show errors below {:.1e}",
             truth.rmse,
             super::EIGHT_BIT_FLOOR
         );
     }
-    text.push_str("* nothing that can be told apart from it is both faster and closer   ? the runs differ by more than a fifth\n");
+    text.push_str("* no measurably different method is both faster and more accurate   ? the runs differ by more than 20 %\n");
     text
 }
 

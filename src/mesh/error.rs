@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum MeshError {
     /// The file name has no known extension.
-    #[error("{path}: meshes are read from files that end in .obj, .stl, .ply, .gltf or .glb", path = .path.display())]
+    #[error("{path}: not a mesh file; their names end in .obj, .stl, .ply, .gltf or .glb", path = .path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -22,7 +22,7 @@ pub enum MeshError {
         source: io::Error,
     },
     /// The file is larger than the limit.
-    #[error("{path}: a mesh file has at most {limit} bytes, this one has more", path = .path.display())]
+    #[error("{path}: a mesh file may have at most {limit} bytes; this one has more", path = .path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -30,7 +30,7 @@ pub enum MeshError {
         limit: u64,
     },
     /// The file has more elements of some kind than the limit.
-    #[error("{path}: a mesh has at most {limit} {what}, this one has more", path = .path.display())]
+    #[error("{path}: a mesh may have at most {limit} {what}; this one has more", path = .path.display())]
     TooMany {
         /// The file.
         path: PathBuf,
@@ -40,7 +40,7 @@ pub enum MeshError {
         limit: usize,
     },
     /// The file has no triangle with an area.
-    #[error("{path}: there are no faces with an area in this file", path = .path.display())]
+    #[error("{path}: this file has no faces with an area", path = .path.display())]
     Empty {
         /// The file.
         path: PathBuf,
@@ -67,7 +67,7 @@ pub(super) enum Fault {
 impl std::fmt::Display for Fault {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
-            Self::TooMany { what, limit } => write!(f, "a mesh has at most {limit} {what}"),
+            Self::TooMany { what, limit } => write!(f, "a mesh may have at most {limit} {what}"),
             Self::Refused { why, .. } => f.write_str(why),
         }
     }

@@ -97,7 +97,7 @@ impl<'a> Buffers<'a> {
         let (places, values) = (sparse.indices(), sparse.values());
         if sparse.count() > points.len() {
             let (count, there) = (sparse.count(), points.len());
-            let why = format!("replaces {count} of {there} points");
+            let why = format!("replaces {count} points, but has only {there}");
             return Err(refused(accessor, why));
         }
         let size = places.index_type().size();
@@ -108,7 +108,7 @@ impl<'a> Buffers<'a> {
         for (place, value) in places.zip(values) {
             let place = whole(place) as usize;
             let Some(point) = points.get_mut(place) else {
-                let why = format!("replaces point {place}, which is not there");
+                let why = format!("replaces point {place}, which does not exist");
                 return Err(refused(accessor, why));
             };
             *point = components(value, accessor);
@@ -137,7 +137,7 @@ impl<'a> Buffers<'a> {
             return Err(refused(accessor, why));
         }
         if accessor.sparse().is_some() {
-            let why = "holds indices and is sparse, which is not read";
+            let why = "holds sparse indices, which are not supported";
             return Err(refused(accessor, why));
         }
         Ok(self.items(accessor)?.map(whole).collect())
@@ -150,7 +150,7 @@ impl<'a> Buffers<'a> {
     ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s, 'a>, Fault> {
         let number = accessor.index();
         let Some(view) = accessor.view() else {
-            return Err(Fault::new(format!("accessor {number} has no bytes")));
+            return Err(Fault::new(format!("accessor {number} has no data")));
         };
         let slots = (accessor.offset(), accessor.size(), accessor.count());
         self.slices(&view, slots, number)
@@ -173,7 +173,7 @@ impl<'a> Buffers<'a> {
         let loaded = loaded.map(|bytes| bytes.as_slice());
         // Only the first buffer can be the binary chunk.
         let Some(bytes) = loaded.or(self.chunk.filter(|_| buffer == 0)) else {
-            return refuse("names a buffer that is not there");
+            return refuse("names a buffer that does not exist");
         };
         let bytes = slice(bytes, view.offset(), view.length());
         let length = match count {
@@ -186,9 +186,7 @@ impl<'a> Buffers<'a> {
             .zip(length)
             .and_then(|(bytes, length)| slice(bytes, offset, length));
         let Some(bytes) = bytes else {
-            let why = format!(
-                "promises {count} items of {size} bytes, which are more than its buffer holds"
-            );
+            let why = format!("declares {count} items of {size} bytes, more than its buffer holds");
             return refuse(&why);
         };
         Ok(bytes
@@ -243,11 +241,11 @@ fn slice(bytes: &[u8], start: usize, length: usize) -> Option<&[u8]> {
 fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((_, text)) = data.split_once(";base64,") else {
-            return Err(Fault::new("a buffer inside the file is not in base64"));
+            return Err(Fault::new("an embedded buffer is not in base64"));
         };
         return BASE64
             .decode(text)
-            .map_err(|error| Fault::new(format!("a buffer inside the file is broken: {error}")));
+            .map_err(|error| Fault::new(format!("an embedded buffer is broken: {error}")));
     }
     if uri.contains("://") {
         let uri = excerpt(uri, 80);
@@ -260,7 +258,7 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
     if !stays_inside(folder, Path::new(&name)) {
         let name = excerpt(&name, 80);
         return Err(Fault::new(format!(
-            "its buffer {name} is not read: it must lie in the folder of the file, or in one within it"
+            "its buffer {name} is not read: it must be in the folder of the file, or below it"
         )));
     }
     let path = folder.join(&name);

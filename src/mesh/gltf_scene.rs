@@ -114,15 +114,15 @@ fn notes(document: &Document, animates: bool) -> Vec<String> {
         (animates, "its animations are left out"),
         (
             uses("KHR_materials_pbrSpecularGlossiness"),
-            "some of its colours are left out: they are those of KHR_materials_pbrSpecularGlossiness",
+            "some of its colours are left out: KHR_materials_pbrSpecularGlossiness is not supported",
         ),
         (
             uses("KHR_node_visibility"),
-            "what is hidden by KHR_node_visibility is shown",
+            "parts hidden by KHR_node_visibility are shown",
         ),
         (
             uses(INSTANCES),
-            "of what stands in many places by EXT_mesh_gpu_instancing, there is one",
+            "meshes repeated by EXT_mesh_gpu_instancing appear only once",
         ),
     ]
     .into_iter()
@@ -143,12 +143,12 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
     let length = length.map_or(0, |length| u32::from_le_bytes(*length) as usize);
     if length < 20 || length > bytes.len() {
         return Err(Fault::new(format!(
-            "the header promises {length} bytes, and the file has {}",
+            "the header declares {length} bytes, but the file has {}",
             bytes.len()
         )));
     }
     let glb = Glb::from_slice(&bytes[..length])
-        .map_err(|error| Fault::new(format!("this is no valid GLB file: {error}")))?;
+        .map_err(|error| Fault::new(format!("not a valid GLB file: {error}")))?;
     Ok((glb.json, glb.bin))
 }
 
@@ -165,19 +165,19 @@ fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     let is_needed = |name: &String| GEOMETRY_EXTENSIONS.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(|name| is_needed(name)) {
         return Err(Fault::new(format!(
-            "its triangles need {name}, which is not read"
+            "its triangles need {name}, which is not supported"
         )));
     }
     root.extensions_required.clear();
     prepare_primitives(&mut root)?;
     let document = Document::from_json(root).map_err(|error| {
         let gltf::Error::Validation(errors) = &error else {
-            return Fault::new(format!("this is no valid glTF file: {error}"));
+            return Fault::new(format!("not a valid glTF file: {error}"));
         };
         let first = errors.first();
         let said = first.map(|(path, error)| format!("{path}: {error}"));
         Fault::new(format!(
-            "this is no valid glTF file: {}",
+            "not a valid glTF file: {}",
             said.unwrap_or_default()
         ))
     })?;
@@ -200,7 +200,7 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
         .get("asset")
         .and_then(|asset| asset["version"].as_str());
     if version.is_some_and(|version| version.starts_with("1.")) {
-        let sentence = "this is a glTF file of version 1; those of version 2 are read";
+        let sentence = "this is a glTF file of version 1; only version 2 is supported";
         return Err(Fault::new(sentence));
     }
     if values.remove("animations").is_some()
@@ -210,7 +210,7 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
     }
     let said = error.to_string();
     let why = said.rsplit_once(" at line ").map_or(&*said, |(why, _)| why);
-    let sentence = format!("this is no valid glTF file: {why}");
+    let sentence = format!("not a valid glTF file: {why}");
     Err(Fault::in_line(error.line(), sentence))
 }
 
@@ -238,7 +238,7 @@ fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
         let index = index.value();
         let Some(accessor) = root.accessors.get_mut(index) else {
             return Err(Fault::new(format!(
-                "a mesh has its positions in accessor {index}, which is not there"
+                "a mesh has its positions in accessor {index}, which does not exist"
             )));
         };
         accessor.min = Some(vec![0.0; 3].into());

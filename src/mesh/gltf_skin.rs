@@ -30,7 +30,7 @@ impl Placing {
             Some(accessor) => {
                 let kind = (DataType::F32, Dimensions::Mat4);
                 if (accessor.data_type(), accessor.dimensions()) != kind {
-                    let why = "holds matrices of a skin that are not sixteen floats each";
+                    let why = "holds skin matrices that are not sixteen floats each";
                     return Err(refused(&accessor, why));
                 }
                 buffers.numbers::<16>(&accessor)?
@@ -72,7 +72,7 @@ impl Placing {
         };
         for accessor in [&joints, &weights] {
             if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
-                let why = "does not hold four joints or shares of a skin for each point";
+                let why = "does not hold four joints or weights for each point";
                 return Err(refused(accessor, why));
             }
         }

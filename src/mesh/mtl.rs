@@ -88,13 +88,15 @@ impl<'a> Libraries<'a> {
         }
         if let Some(unknown) = self.unknown.take() {
             let name = excerpt(&unknown, LONGEST_NAME);
-            return Some(format!("no material file of it has {name}, which it names"));
+            return Some(format!(
+                "it uses the material {name}, which is in none of its material files"
+            ));
         }
         let has_any = !self.names.borrow().is_empty();
         let early = self.early.take().filter(|_| has_any)?;
         let name = excerpt(&early, LONGEST_NAME);
         Some(format!(
-            "some colours are missing: it names {name} before its material file"
+            "some colours are missing: it uses {name} before naming its material file"
         ))
     }
 

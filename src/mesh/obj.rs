@@ -61,8 +61,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
             Ok([only]) => Ok(only),
             Err(several) => Triangles::join(several.iter()),
         });
-        let triangles =
-            triangles.map_err(|_| find_fault(text, "a point is not where numbers can be"))?;
+        let triangles = triangles
+            .map_err(|_| find_fault(text, "a point has a coordinate that is out of range"))?;
         Ok(Part {
             name,
             colors: material.and_then(colors_of),

@@ -40,7 +40,7 @@ pub(super) fn find_fault(text: &str, said: &str) -> Fault {
             return Fault::in_line(index + 1, why);
         }
     }
-    Fault::new(format!("this is no valid OBJ file: {said}"))
+    Fault::new(format!("not a valid OBJ file: {said}"))
 }
 
 fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
@@ -51,7 +51,7 @@ fn wrong_point<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
         let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
         let Some(number) = number else {
             return Some(format!(
-                "the coordinate {:?} is no finite number",
+                "the coordinate {:?} is not a finite number",
                 excerpt(word, EXCERPT)
             ));
         };
@@ -67,7 +67,7 @@ fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
     let mut numbers = word.split('/');
     let Some(point) = numbers.next().and_then(|text| text.parse::<isize>().ok()) else {
         return Some(format!(
-            "the corner {:?} of this face names no point",
+            "the corner {:?} of this face is not the number of a point",
             excerpt(word, EXCERPT)
         ));
     };
@@ -85,5 +85,5 @@ fn wrong_corner(word: &str, before: usize, total: usize) -> Option<String> {
     };
     let before = if point < 0 { " before it" } else { "" };
     (!is_there)
-        .then(|| format!("this face names point {point}, and there are only {count}{before}"))
+        .then(|| format!("this face names point {point}, but there are only {count}{before}"))
 }

@@ -30,9 +30,9 @@ impl MeshFile {
 pub(super) const COLORS_OF_POINTS: &str = "colours of points or faces are left out";
 
 /// The note on transparency, which scenes do not support.
-pub(super) const CLEAR: &str = "what is transparent is shown opaque";
+pub(super) const CLEAR: &str = "transparent materials are shown opaque";
 /// The note on emissive materials, which scenes do not support: only lights emit light.
-pub(super) const GLOWING: &str = "what glows does not";
+pub(super) const GLOWING: &str = "glowing materials do not glow";
 
 /// A group or object of an OBJ file, a primitive of a glTF file, or the whole of an STL or PLY file.
 #[derive(Clone, Debug, PartialEq)]

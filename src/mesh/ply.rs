@@ -63,12 +63,12 @@ fn has_colors(header: &Header) -> bool {
 
 fn header_fault(error: &ParseError, bytes: &[u8]) -> Fault {
     if !bytes.starts_with(b"ply") {
-        return Fault::new("this is no PLY file, which begins with `ply`");
+        return Fault::new("not a PLY file: it does not begin with `ply`");
     }
     match (error.kind(), error.line()) {
         (ErrorKind::UnexpectedEof, _) => Fault::new("the header has no `end_header`"),
-        (_, Some(line)) => Fault::in_line(line, "this is no line of a PLY header"),
-        (_, None) => Fault::new("the header does not say which format of PLY this is"),
+        (_, Some(line)) => Fault::in_line(line, "this is not a valid line of a PLY header"),
+        (_, None) => Fault::new("the header does not name the PLY format"),
     }
 }
 
@@ -143,7 +143,7 @@ impl Body<'_> {
         // The last line of a text may lack its line break.
         if least > self.rest.len() + usize::from(is_text) {
             return Err(Fault::new(format!(
-                "the header promises {} of `{}`, which take at least {least} bytes, and the file has {} left",
+                "the header declares {} of `{}`, which take at least {least} bytes, but the file has {} left",
                 element.count,
                 element.name,
                 self.rest.len()
@@ -195,7 +195,7 @@ impl Body<'_> {
             let line = line.trim_ascii();
             if !line.is_empty() {
                 return str::from_utf8(line)
-                    .map_err(|_| "this is no text".to_owned())
+                    .map_err(|_| "this line is not text".to_owned())
                     .and_then(|line| Element::from_text(line, element))
                     .map_err(|why| Fault::in_line(self.line - 1, why));
             }
@@ -208,7 +208,7 @@ fn body_fault(error: &ParseError, number: usize, element: &ElementDef) -> Fault 
     match error.kind() {
         ErrorKind::UnexpectedEof => ends_within(number, element),
         _ => Fault::new(format!(
-            "{} {number} has a list of a length or type that cannot be",
+            "{} {number} has a list of an invalid length or type",
             element.name
         )),
     }
@@ -222,13 +222,13 @@ fn ends_within(number: usize, element: &ElementDef) -> Fault {
 /// Returns the number of vertices; fails unless the header gives them scalar coordinates.
 fn check_vertices(header: &Header) -> Result<usize, Fault> {
     let Some(element) = header.elements.get("vertex") else {
-        return Err(Fault::new("the header names no element `vertex`"));
+        return Err(Fault::new("the header has no element `vertex`"));
     };
     for name in ["x", "y", "z"] {
         let property = element.properties.get(name);
         let is_number = |data: &PropertyType| matches!(data, PropertyType::Scalar(_));
         if !property.is_some_and(|property| is_number(&property.data_type)) {
-            let sentence = format!("the header gives a `vertex` no number `{name}`");
+            let sentence = format!("the element `vertex` in the header has no number `{name}`");
             return Err(Fault::new(sentence));
         }
     }
@@ -241,7 +241,7 @@ fn check_corners(element: &ElementDef) -> Result<(), Fault> {
     });
     if !has_corners {
         return Err(Fault::new(format!(
-            "the header gives a `{}` no list `vertex_indices` or `vertex_index`",
+            "the element `{}` in the header has no list `vertex_indices` or `vertex_index`",
             element.name
         )));
     }

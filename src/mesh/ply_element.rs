@@ -38,7 +38,10 @@ impl Element {
             };
             let wrong = |word: &str| {
                 let word = excerpt(word, 24);
-                format!("{word:?} is no number for {name} of this {}", element.name)
+                format!(
+                    "{word:?} is not a number for {name} of this {}",
+                    element.name
+                )
             };
             match property.data_type {
                 PropertyType::Scalar(_) => {

@@ -49,7 +49,9 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bo
 pub(super) fn note_of_uncut(count: usize) -> Option<String> {
     (count > 0).then(|| {
         let faces = counted(count, "face");
-        format!("{faces} with more than {MOST_CORNERS} corners may cover their notches")
+        format!(
+            "{faces} with more than {MOST_CORNERS} corners may be filled in where they are concave"
+        )
     })
 }
 

@@ -83,19 +83,19 @@ fn prepare_binary(bytes: &mut Vec<u8>) -> Result<Option<String>, Fault> {
     let found = bytes.len();
     let Some((count, length)) = promised(bytes) else {
         return Err(Fault::new(format!(
-            "this is no text that begins with `solid`, and too short for a binary STL file: {found} of at least {HEADER} bytes"
+            "not an STL file: it does not begin with `solid`, and is too short to be binary, with {found} of at least {HEADER} bytes"
         )));
     };
     if length > found as u64 {
         return Err(Fault::new(format!(
-            "the header promises {count} triangles, which take {length} bytes, and the file ends after {found}"
+            "the header declares {count} triangles, which take {length} bytes, but the file ends after {found}"
         )));
     }
     check_faces(count)?;
     let more = found as u64 - length;
     // Fewer bytes need no note: some programs append a few of their own.
     let note = (more >= TRIANGLE as u64).then(|| {
-        format!("{more} bytes behind the {count} triangles that the header promises are not read")
+        format!("{more} bytes after the {count} triangles that the header declares are not read")
     });
     bytes.truncate(HEADER + count * TRIANGLE);
     // So that the reader does not take the header for text.

@@ -187,13 +187,13 @@ pub const FARTHEST: f64 = 1e12;
 
 /// The error message for a point that is not finite or out of range.
 fn not_a_place(point: usize) -> String {
-    format!("point {point} has a coordinate that is no finite number within 1e12 of 0")
+    format!("point {point} has a coordinate that is not a finite number within 1e12 of 0")
 }
 
 /// The fault of a face that refers to a missing point; both numbers are as they are counted in the file.
 pub(super) fn out_of_range(face: usize, point: impl std::fmt::Display, count: usize) -> Fault {
     Fault::new(format!(
-        "face {face} names point {point}, and there are only {count}, counted from 0"
+        "face {face} names point {point}, but there are only {count}, counted from 0"
     ))
 }
 
@@ -325,11 +325,11 @@ mod tests {
         let points = [DVec3::ZERO, DVec3::X, DVec3::NAN];
         assert_eq!(
             said(&points, &[[0, 1, 9]]),
-            "face 1 names point 9, and there are only 3, counted from 0"
+            "face 1 names point 9, but there are only 3, counted from 0"
         );
         assert_eq!(
             said(&points, &[[0, 1, 2]]),
-            "point 3 has a coordinate that is no finite number within 1e12 of 0"
+            "point 3 has a coordinate that is not a finite number within 1e12 of 0"
         );
     }
 }

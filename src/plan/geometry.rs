@@ -95,11 +95,8 @@ impl Planner {
             return;
         }
         let (mut rounded, mut packed) = (single.meshes(), double.meshes());
-        for object in scene
-            .objects
-            .iter()
-            .filter(|object| belongs_in_tree(object))
-        {
+        let members = scene.objects.iter();
+        for object in members.filter(|object| belongs_in_tree(object)) {
             if let Shape::Mesh(mesh) = &object.shape {
                 rounded.take_over(&packed.ready(mesh));
             }

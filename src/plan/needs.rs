@@ -17,7 +17,7 @@ use crate::words::counted;
 pub const ACCELERATOR: &str = "accelerator";
 
 /// The reason for anything that the user has chosen.
-const ASKED: &str = "it was asked for";
+const ASKED: &str = "it was requested";
 
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -70,30 +70,30 @@ fn precision(scene: &Scene, request: &RenderRequest) -> Need {
             rule,
             double,
             "something is too far, too small or too close for single precision, or the lens is too long",
-            "nothing: the picture would show the rounding",
+            "nothing: rounding would be visible in the picture",
         ),
         Precision::Auto if is_too_large_for_both(scene, request) => need(
             rule,
             double,
-            "there is too much to keep all of it in both, to trace again where rounding may decide",
-            "room: both take half as much again, and no less time",
+            "the scene is too large to keep in both precisions, which tracing doubtful samples again needs",
+            "memory: both precisions need half as much again, and save no time",
         ),
         Precision::Auto => {
             let (what, saves) = if is_filtered(scene, request) {
                 (
-                    "single precision, and double where rounding may decide what is seen",
+                    "single precision, and double where rounding might change what is visible",
                     "time: a vector holds twice as many numbers",
                 )
             } else {
                 (
                     "single precision",
-                    "time: a vector holds twice as many numbers, and what rounding decides on edges is not traced again",
+                    "time: a vector holds twice as many numbers, and pixels on edges that rounding decides are not traced again",
                 )
             };
             let why = if allows_finer_features(scene, request) {
-                "nothing is farther than 500,000 of its radii or smaller than 1/1,000,000 of the scene"
+                "no object is farther away than 500,000 of its radii or smaller than 1/1,000,000 of the scene"
             } else {
-                "nothing is farther than 5,000 of its radii or smaller than 1/10,000 of the scene"
+                "no object is farther away than 5,000 of its radii or smaller than 1/10,000 of the scene"
             };
             need(rule, what, why, saves)
         }
@@ -149,7 +149,7 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
         return need(rule, "no shadow rays", why, "all of them");
     }
     let why = if used == all {
-        "every light may shine on something that the camera can reach"
+        "every light may shine on something that is visible"
     } else {
         "the others are hidden, have no intensity or are behind a plane"
     };
@@ -164,7 +164,8 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     )
 }
 
-const FAILING: &str = "formulas that are known to fail were asked for, and shall show it";
+const FAILING: &str =
+    "formulas that are known to fail were requested, and their errors should be visible";
 
 fn planes(plan: &Plan<f64>) -> Need {
     let rule = "planes";
@@ -173,11 +174,11 @@ fn planes(plan: &Plan<f64>) -> Need {
             rule,
             "no planes",
             "there are none in the scene",
-            "their test for every ray",
+            "testing them for every ray",
         ),
         (number, true) => {
             let why = if plan.methods.is_sound() {
-                "parallel rays start on both sides of a plane, or the camera is on one"
+                "parallel rays start on both sides of a plane, or the camera lies in one"
             } else {
                 FAILING
             };
@@ -187,7 +188,7 @@ fn planes(plan: &Plan<f64>) -> Need {
         (number, false) => need(
             rule,
             format!("{} never tested for shadows", counted(number, "plane")),
-            "everything the camera can reach is on its side of every plane",
+            "everything visible is on the camera's side of every plane",
             "a test per plane and shadow ray",
         ),
     }
@@ -203,7 +204,7 @@ fn markers(scene: &Scene, plan: &Plan<f64>) -> Need {
         .count();
     if drawn > 0 {
         let what = format!(
-            "{} drawn, in no shadow test",
+            "{} drawn, never tested for shadows",
             counted(drawn, "light marker")
         );
         need(
@@ -239,7 +240,7 @@ fn hidden(scene: &Scene) -> Need {
             "hidden",
             what,
             "hidden in the outliner",
-            "their tests for every ray",
+            "testing them for every ray",
         )
     }
 }
@@ -248,8 +249,8 @@ fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
     let all = plan.primitives.triangles.len();
     if all == 0 {
-        let why = "there are none outside of meshes, whose trees know their far sides";
-        return need(rule, "no triangles by themselves", why, "nothing");
+        let why = "there are none outside meshes, whose trees skip their far sides";
+        return need(rule, "no single triangles", why, "nothing");
     }
     let set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
     let unseen = set(&plan.camera_culled_faces);
@@ -295,24 +296,24 @@ fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need 
     if plan.geometry.is_some() {
         let why = asked.unwrap_or_else(|| {
             format!(
-                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles, or fewer that fill a space or share few pixels, are too much to be listed for every tile"
+                "meshes, more than {LARGEST_LIST} objects or {MOST_LISTED_TRIANGLES} triangles, or fewer that fill a volume or share few pixels, are too many to list for every tile"
             )
         });
         need(
             rule,
             format!("{what} in a tree of boxes"),
             why,
-            "time that grows with what a ray comes near, not with the scene",
+            "time: it grows with what a ray comes near, not with the size of the scene",
         )
     } else {
         let why = asked.unwrap_or_else(|| {
             format!(
-                "up to {SMALLEST_TREE}, or {LARGEST_LIST} side by side with many pixels each, are tested faster than a tree is walked"
+                "up to {SMALLEST_TREE}, or {LARGEST_LIST} side by side with many pixels each, are tested faster than a tree is traversed"
             )
         });
         need(
             rule,
-            format!("{what} in a flat list, cut down for every tile"),
+            format!("{what} in a flat list, shortened for every tile"),
             why,
             "building a tree on every edit",
         )
@@ -327,12 +328,12 @@ fn normals(scene: &Scene) -> Need {
             rule,
             "one normal per face",
             "no visible mesh is smooth",
-            "three normals per face, put together at every hit",
+            "interpolating three normals per face at every hit",
         ),
         smooth => need(
             rule,
-            "normals put together from the corners of faces",
-            format!("visible meshes that are smooth: {smooth}"),
+            "normals interpolated between the corners of faces",
+            format!("smooth meshes are visible: {smooth}"),
             "nothing: secondary rays start on the curved surface, so that its faces do not shadow it",
         ),
     }
@@ -356,8 +357,8 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
         need(
             rule,
             "no highlights",
-            "nothing that is visible has a specular colour",
-            "their powers, for every light",
+            "no visible object has a specular colour",
+            "computing their powers for every light",
         )
     } else if exponents
         .iter()
@@ -381,7 +382,7 @@ fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need 
         need(
             rule,
             "squaring, and a logarithm for fractions",
-            "an exponent is not whole",
+            "an exponent is not a whole number",
             "nothing",
         )
     } else {
@@ -405,20 +406,20 @@ fn edges(request: &RenderRequest) -> Need {
         Sampling::Centres => need(
             rule,
             "one ray per pixel",
-            "no smoothing was asked for",
-            "all further rays",
+            "antialiasing is off",
+            "all additional rays",
         ),
         Sampling::Grid(side) => need(
             rule,
             format!("{side}×{side} rays per pixel"),
-            "a grid was asked for",
+            "a grid was requested",
             "nothing",
         ),
         Sampling::Adaptive { .. } => need(
             rule,
             "more rays only where corners differ or something thin is near",
             "elsewhere a pixel is the mean of its corners",
-            "most rays of a grid of equal error",
+            "most of the rays of an equally accurate grid",
         ),
     }
 }

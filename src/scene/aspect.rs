@@ -59,48 +59,44 @@ impl Aspect {
         (
             Self::Specular,
             "Specular only",
-            "Each light: intensity · specular colour · highlight; no mirror images",
+            "Each light: intensity · specular colour · highlight; no mirror reflections",
         ),
         (
             Self::WithoutMirrors,
             "Without mirrors",
-            "Everything but mirror images",
+            "Everything except mirror reflections",
         ),
-        (Self::Clay, "Clay", "Shapes and shadows, all of one grey"),
-        (
-            Self::Objects,
-            "Objects",
-            "Each object in a colour of its own",
-        ),
+        (Self::Clay, "Clay", "Shapes and shadows, all in one grey"),
+        (Self::Objects, "Objects", "Each object in its own colour"),
         (
             Self::Normals,
             "Normals",
-            "Which way surfaces are turned: x, y and z from -1 to 1 as red, green and blue",
+            "Which way surfaces face: x, y and z from -1 to 1 as red, green and blue",
         ),
         (
             Self::Depth,
             "Depth",
-            "How far things are: white where the scene begins, black where it ends",
+            "Distance from the camera: white where the scene begins, black where it ends",
         ),
         (
             Self::Shadows,
             "Shadows only",
-            "How many of the lights reach a point: white is all of them",
+            "How many of the lights reach each point: white is all of them",
         ),
         (
             Self::Mirrors,
             "Mirrors only",
-            "What mirrors add to the surfaces that they are",
+            "What mirror reflections add to their surfaces",
         ),
         (
             Self::Cost,
             "Rays per pixel",
-            "What the picture costs, in squares of 8 pixels: black is 1 ray for each, white 1,000",
+            "Rays per pixel, averaged over squares of 8 pixels: black is 1, white 1,000",
         ),
         (
             Self::Again,
             "Traced again",
-            "Where rounding may decide what is seen, and double precision does: white, in a dark picture",
+            "Samples that are traced again in double precision, since rounding might change them: white, in a dark picture",
         ),
     ];
 

@@ -36,7 +36,7 @@ pub fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
             scene.ambient_intensity != other.ambient_intensity,
         ),
         (
-            "whether lights are shown",
+            "the visibility of light markers",
             scene.light_visualization != other.light_visualization,
         ),
         ("bookmarks", scene.bookmarks != other.bookmarks),

@@ -40,13 +40,13 @@ pub enum SceneError {
     #[error("{0}")]
     Refused(Refusal),
     /// The file name is that of a mesh file; nothing was read.
-    #[error("{path} is no scene but a mesh file: `glint convert {path} -o NAME.ron` makes a scene of it, and Import mesh in the File menu of the window adds it to one", path = .path.display())]
+    #[error("{path} is a mesh file, not a scene: `glint convert {path} -o NAME.ron` converts it to a scene, and Import mesh in the File menu of the editor adds it to one", path = .path.display())]
     Mesh {
         /// The file.
         path: PathBuf,
     },
     /// The file is larger than the limit for scenes; nothing was read.
-    #[error("{path}: a scene file has at most {limit} bytes, this one has {found}", path = .path.display())]
+    #[error("{path}: a scene file may have at most {limit} bytes; this one has {found}", path = .path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,

@@ -100,7 +100,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
                 let words = format!("{} is on the surface of {name}", light.name);
                 add(words, About::Light(index), false);
             } else if is_inside(&object.shape, light.position) {
-                let words = format!("{} is inside {name}, which shuts it in", light.name);
+                let words = format!("{} is inside {name}, which blocks its light", light.name);
                 add(words, About::Light(index), false);
             }
         }
@@ -110,7 +110,7 @@ pub fn thing_hints(scene: &Scene) -> Vec<Hint> {
     let packs = scene.color_packs.iter().enumerate();
     for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {
         if !worn.contains(name.as_str()) {
-            let words = format!("No object wears {name}");
+            let words = format!("No object uses {name}");
             add(words, About::Pack(index), false);
         }
     }
@@ -143,9 +143,9 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
         let words = if is_twice {
             format!("{name} is in the same place as {other}")
         } else if extent == Overlap::Faces {
-            format!("{name} shares faces with {other}, which comes first and is seen there")
+            format!("{name} shares faces with {other}, which comes first and is shown there")
         } else {
-            format!("{name} lies in {other}, which comes first and is seen there")
+            format!("{name} lies in the surface of {other}, which comes first and is shown there")
         };
         add(words, About::Object(later), is_twice);
     }
@@ -236,10 +236,10 @@ mod tests {
             words(&scene),
             [
                 "The camera is inside Sphere 1",
-                "Light 1 is inside Sphere 2, which shuts it in",
+                "Light 1 is inside Sphere 2, which blocks its light",
                 "Light 2 is on the surface of Plane",
                 "Light 2 is on the surface of Plane 2",
-                "No object wears idle",
+                "No object uses idle",
                 "Plane 2 is in the same place as Plane",
             ]
         );

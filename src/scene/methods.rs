@@ -83,7 +83,7 @@ impl Method for Precision {
         method(
             Self::Auto,
             "auto",
-            "f32; f64 where that may show: for a scene, or for a sample",
+            "f32, and f64 for scenes or samples where the difference may be visible",
             "Shewchuk, Adaptive precision floating-point arithmetic, Discrete & Computational Geometry 18, 1997",
         ),
         method(Self::Single, "f32", "single precision", "IEEE 754"),
@@ -137,13 +137,13 @@ impl Method for TriangleMethod {
         method(
             Self::Watertight,
             "watertight",
-            "shear, then 2D edge functions: nothing leaks between neighbours",
+            "shear, then 2D edge functions: no leaks between neighbours",
             "Woop, Benthin and Wald, JCGT 2(1), 2013",
         ),
         method(
             Self::Edges,
             "edges",
-            "hit of the plane, then a cross product per edge: leaks along edges",
+            "intersection with the plane, then a cross product per edge: leaks along edges",
             ORIGINAL,
         ),
         method(
@@ -181,25 +181,25 @@ impl Method for RayOffset {
         method(
             Self::Robust,
             "robust",
-            "at the hit, which the own primitive does not shadow; a few roundings off in a mesh",
+            "at the hit, ignoring the primitive that was hit; on meshes, a few rounding steps away from it",
             "Glint",
         ),
         method(
             Self::Fixed(0.1),
             "fixed:0.1",
-            "so many world units along the new ray: fits scenes of one size",
+            "this many world units along the new ray: suits scenes of one size only",
             ORIGINAL,
         ),
         method(
             Self::Relative(1e-4),
             "relative:0.0001",
-            "such a share of the scene's diagonal along the new ray",
+            "this fraction of the scene's diagonal along the new ray",
             "common practice",
         ),
         method(
             Self::WachterBinder,
             "wachter-binder",
-            "256 roundings of the hit's coordinates along the normal",
+            "256 rounding steps of the hit's coordinates along the normal",
             "Wächter and Binder, Ray Tracing Gems, 2019, ch. 6",
         ),
     ];
@@ -229,7 +229,7 @@ impl Method for RayOffset {
     }
 
     fn syntax() -> String {
-        "robust, wachter-binder, fixed: and a distance ≥ 0 such as fixed:0.1, or relative: and a share of the scene such as relative:0.0001".to_owned()
+        "robust, wachter-binder, fixed:DISTANCE with a distance ≥ 0 such as fixed:0.1, or relative:FRACTION of the scene's diagonal such as relative:0.0001".to_owned()
     }
 }
 
@@ -250,14 +250,14 @@ impl Method for HighlightMethod {
         method(
             Self::Auto,
             "auto",
-            "the power up to 256, exp and log1p above",
+            "pow for exponents up to 256, log1p above",
             "Glint's plan",
         ),
         method(Self::Power, "pow", "(n·h)^p: error grows with p", ORIGINAL),
         method(
             Self::Log1p,
             "log1p",
-            "exp(p·log1p(-|n - h|²/2)): keeps what 1 - n·h has lost",
+            "exp(p·log1p(-|n - h|²/2)): keeps the digits that 1 - n·h loses",
             "Glint, after Kahan's log1p",
         ),
     ];
@@ -280,20 +280,20 @@ impl Method for Accelerator {
         method(
             Self::Auto,
             "auto",
-            "a tree for meshes, and for many shapes that fill a space or share few pixels; else a list",
+            "a tree for meshes, and for many shapes that fill a volume or share few pixels; otherwise a list",
             "Glint's plan",
         ),
         method(
             Self::List,
             "list",
-            "each by each, per tile; meshes for every ray",
+            "one by one, for each tile; meshes for every ray",
             "Glint",
         ),
         method(
             Self::Bvh,
             "bvh",
-            "a tree of boxes, 16 in each, walked by packets of rays",
-            "Wald, Benthin and Boulos, RT 2008, in kind",
+            "a tree of boxes, 16 in each, traversed by packets of rays",
+            "after Wald, Benthin and Boulos, RT 2008",
         ),
     ];
 }
@@ -338,14 +338,14 @@ impl Method for Sampling {
         method(
             Self::ADAPTIVE,
             "adaptive",
-            "corners, and more where they see different things",
+            "at the corners of pixels, and more where these differ",
             "Whitted, CACM 23(6), 1980",
         ),
         method(Self::Centres, "none", "one ray per pixel", ORIGINAL),
         method(
             Self::Grid(4),
             "grid:4",
-            "a square of rays in every pixel, so many to a side",
+            "a square of rays in every pixel, this many per side",
             "common practice",
         ),
     ];
@@ -383,7 +383,7 @@ impl Method for Sampling {
 
     fn syntax() -> String {
         format!(
-            "none, adaptive, grid: and a number from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH with 0 to 3 and 0 to {MAX_HALVINGS}, such as adaptive:0.1:{MAX_HALVINGS}"
+            "none, adaptive, grid:N with N from 1 to {MAX_GRID} such as grid:4, or adaptive:CONTRAST:DEPTH with a contrast from 0 to 3 and a depth from 0 to {MAX_HALVINGS} such as adaptive:0.1:{MAX_HALVINGS}"
         )
     }
 }

@@ -6,7 +6,7 @@ use ron::Error;
 fn hint_of_decimals(before: &str) -> &'static str {
     let number = before.trim_end().strip_suffix(',');
     if number.is_some_and(|number| number.ends_with(|c: char| c.is_ascii_digit())) {
-        ": decimals stand behind a point"
+        ": decimals are written after a point"
     } else {
         ""
     }
@@ -20,7 +20,7 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         Error::ExpectedStructLikeEnd
             if before.trim_end().ends_with(',') && after.starts_with(is_of_number) =>
         {
-            "expected the closing bracket: this is a number more than there may be".to_owned()
+            "expected the closing bracket: there is one number too many".to_owned()
         }
         Error::SuggestRawIdentifier(name) if name.starts_with(is_of_number) => {
             let hint = hint_of_decimals(before);
@@ -53,9 +53,9 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         }
         Error::MissingStructField { field, outer } => {
             let owner = outer.as_deref().unwrap_or("this");
-            format!("{owner} needs a field `{field}`, which is not there")
+            format!("{owner} needs a field `{field}`, which is missing")
         }
-        Error::DuplicateStructField { field, .. } => format!("the field `{field}` comes twice"),
+        Error::DuplicateStructField { field, .. } => format!("the field `{field}` appears twice"),
         Error::ExpectedDifferentLength { expected, found } => {
             let such = if expected.contains("Sample") {
                 "time, position, yaw, pitch and roll such as (0, (1, 2, 3), 0, 0, 0)"
@@ -73,7 +73,7 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         Error::ExpectedInteger | Error::InvalidIntegerDigit { base: 10, .. } => {
             "expected a whole number".to_owned()
         }
-        Error::ExpectedString => "expected a text in quotation marks".to_owned(),
+        Error::ExpectedString => "expected text in quotation marks".to_owned(),
         Error::ExpectedStringEnd => "the text has no closing quotation mark".to_owned(),
         Error::ExpectedArray => "expected a list: […]".to_owned(),
         Error::ExpectedMap => "expected a map: {\"name\": …}".to_owned(),
@@ -88,31 +88,33 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
         Error::ExpectedIdentifier => "expected a name".to_owned(),
         Error::ExpectedUnit => "expected ()".to_owned(),
         Error::ExpectedChar | Error::ExpectedByteLiteral | Error::ExpectedByteString => {
-            "expected a number or a text in quotation marks".to_owned()
+            "expected a number or text in quotation marks".to_owned()
         }
         Error::FloatUnderscore | Error::UnderscoreAtBeginning => {
-            "there is an underscore in the number where none may be".to_owned()
+            "the number has an underscore in the wrong place".to_owned()
         }
         Error::SuggestRawIdentifier(name) => {
-            format!("there is no `{name}`: names are of letters, digits and _")
+            format!("there is no `{name}`: names consist of letters, digits and _")
         }
         Error::InvalidIntegerDigit { digit, base } => {
-            format!("{digit:?} is no digit of a number in base {base}")
+            format!("{digit:?} is not a digit in base {base}")
         }
-        Error::UnexpectedChar(found) => format!("there may be no {found:?} here"),
-        Error::InvalidEscape(_) => "the backslash in the text stands for nothing known".to_owned(),
-        Error::NoSuchExtension(name) => format!("there is no extension of RON named `{name}`"),
+        Error::UnexpectedChar(found) => format!("{found:?} is not allowed here"),
+        Error::InvalidEscape(_) => {
+            "the backslash in the text begins an unknown escape sequence".to_owned()
+        }
+        Error::NoSuchExtension(name) => format!("there is no RON extension named `{name}`"),
         Error::ExpectedAttribute | Error::ExpectedAttributeEnd => {
             "expected an attribute such as #![enable(…)]".to_owned()
         }
-        Error::Utf8Error(_) => "the file is no text in UTF-8".to_owned(),
-        Error::UnclosedLineComment => "the comment does not end".to_owned(),
+        Error::Utf8Error(_) => "the file is not UTF-8 text".to_owned(),
+        Error::UnclosedLineComment => "the comment is not closed".to_owned(),
         Error::IntegerOutOfBounds => {
             "the number is out of range: it is too large, or less than 0".to_owned()
         }
         Error::InvalidValueForType { expected, found } => invalid_value(expected, found),
         Error::UnclosedBlockComment => "the comment has no closing */".to_owned(),
-        Error::TrailingCharacters => "there is more text behind the end of the scene".to_owned(),
+        Error::TrailingCharacters => "there is text after the end of the scene".to_owned(),
         other => other.to_string(),
     }
 }

@@ -163,19 +163,34 @@ impl Render {
             prefix,
         };
         visitor.visit(
-            setting("antialias", "edges", "How edges are smoothed", ""),
+            setting("antialias", "edges", "Antialiasing of edges", ""),
             &mut self.antialias,
         );
         visitor.visit(
-            setting("precision", "precision", "The real type of the tracer", ""),
+            setting(
+                "precision",
+                "precision",
+                "Floating-point precision of the tracer",
+                "",
+            ),
             &mut self.precision,
         );
         visitor.visit(
-            setting("sphere", "sphere", "Ray against sphere", "sphere "),
+            setting(
+                "sphere",
+                "sphere",
+                "Intersection of rays and spheres",
+                "sphere ",
+            ),
             &mut self.sphere,
         );
         visitor.visit(
-            setting("triangle", "triangle", "Ray against triangle", ""),
+            setting(
+                "triangle",
+                "triangle",
+                "Intersection of rays and triangles",
+                "",
+            ),
             &mut self.triangle,
         );
         visitor.visit(
@@ -191,13 +206,13 @@ impl Render {
             setting(
                 "specular",
                 "specular",
-                "The power of a highlight",
+                "How the power in highlights is computed",
                 "highlight ",
             ),
             &mut self.specular,
         );
         visitor.visit(
-            setting("accelerator", "accelerator", "How primitives are found", ""),
+            setting("accelerator", "accelerator", "How rays find primitives", ""),
             &mut self.accelerator,
         );
     }

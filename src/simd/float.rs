@@ -200,7 +200,7 @@ macro_rules! single_lane {
             }
             #[inline(always)]
             fn vectorize<T>((): (), work: impl FnOnce() -> T) -> T {
-                apart(work)
+                call_out_of_line(work)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -255,7 +255,7 @@ impl Mask for bool {
 /// Runs the work as a function of its own. On targets whose instructions are enabled everywhere, nothing else keeps
 /// it from being inlined at every call, and the kernels would take half as long again to compile.
 #[inline(never)]
-fn apart<T>(work: impl FnOnce() -> T) -> T {
+fn call_out_of_line<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
@@ -344,8 +344,8 @@ where
     fn load_singles(token: S, numbers: &[f32]) -> Self {
         // A loop, which is vectorised at high optimisation levels; in a closure, it would not be.
         let mut row = [V::Element::ZERO; MAX_LANES];
-        for (own, &number) in row.iter_mut().zip(&numbers[..V::LEN]) {
-            *own = V::Element::from_single(number);
+        for (entry, &number) in row.iter_mut().zip(&numbers[..V::LEN]) {
+            *entry = V::Element::from_single(number);
         }
         wide(V::from_slice(token, &row[..V::LEN]))
     }
@@ -359,7 +359,7 @@ where
     }
     #[inline(always)]
     fn vectorize<T>(token: S, work: impl FnOnce() -> T) -> T {
-        apart(move || token.vectorize(work))
+        call_out_of_line(move || token.vectorize(work))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

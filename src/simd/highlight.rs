@@ -10,7 +10,7 @@ const LARGEST_SQUARED: f64 = 256.0;
 /// Number of square roots in [`logarithm`], and of squarings in [`exponential`].
 const HALVINGS: u32 = 6;
 /// Exponents below this give far less than one level.
-const LOWEST: f64 = -30.0;
+const MIN_EXPONENT: f64 = -30.0;
 
 /// A Phong exponent, prepared: the best way to compute (n·h)^p depends only on p.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +77,7 @@ impl Exponent {
             Self::Large(p) => {
                 let off = n - half * (half_square.like(L::Real::ONE) / half_square.sqrt());
                 let w = off.dot(off) * half_square.like_f64(0.5);
-                let power = exponential(-w.like_f64(p) * fall(w));
+                let power = exponential(-w.like_f64(p) * negative_log1p(w));
                 L::select(zero.less(n_dot_half), power, zero)
             }
         }
@@ -100,7 +100,7 @@ fn whole_power<L: SimdFloat>(base: L, mut exponent: u32) -> L {
 /// -log1p(-w) = 2·artanh(w / (2 - w)) by the first terms of the series: relative error below 10⁻¹¹ for w ≤ 0.15.
 /// For larger w, it is at least 0.15, which suffices for a large power to vanish.
 #[inline(always)]
-fn fall<L: SimdFloat>(w: L) -> L {
+fn negative_log1p<L: SimdFloat>(w: L) -> L {
     let z = w / (w.like_f64(2.0) - w);
     artanh(z) * z.like_f64(2.0)
 }
@@ -135,7 +135,7 @@ fn artanh<L: SimdFloat>(z: L) -> L {
 /// below 2⁷u in single precision and below 10⁻¹² in double, for any the absolute error below 10⁻¹².
 #[inline(always)]
 fn exponential<L: SimdFloat>(x: L) -> L {
-    let y = x.max(x.like_f64(LOWEST)) * x.like_f64(1.0 / f64::from(1 << HALVINGS));
+    let y = x.max(x.like_f64(MIN_EXPONENT)) * x.like_f64(1.0 / f64::from(1 << HALVINGS));
     let one = x.like(L::Real::ONE);
     let mut sum = one;
     let mut divisor = 11.0;
@@ -170,7 +170,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    fn ours(p: f64) -> f64 {
+    fn worst_of_highlight(p: f64) -> f64 {
         worst_level(p, |n, h| Exponent::new(p).highlight(n, h))
     }
 
@@ -179,7 +179,11 @@ mod tests {
         for p in [
             0.05, 0.5, 1.0, 16.0, 16.9, 100.5, 255.5, 256.0, 256.5, 257.0, 1e3, 1e4, 1e5, 1e6,
         ] {
-            assert!(ours(p) <= 0.5, "p = {p}: {} levels", ours(p));
+            assert!(
+                worst_of_highlight(p) <= 0.5,
+                "p = {p}: {} levels",
+                worst_of_highlight(p)
+            );
         }
         let plain = worst_level(1e6, |n, h| n.dot(h).max(0.0).powf(1e6_f64 as f32));
         assert!(

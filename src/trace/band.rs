@@ -24,7 +24,7 @@ pub struct Band<'a, R> {
     /// The scene and view to trace.
     pub plan: &'a Plan<R>,
     /// Everything that camera rays may hit.
-    pub seen: &'a Candidates,
+    pub candidates: &'a Candidates,
     /// Side of a tile in pixels.
     pub tile: usize,
     /// Whether packets cover squares of pixels instead of rows.
@@ -44,7 +44,7 @@ pub struct Band<'a, R> {
     /// The messages that its pixels get from adjacent ones.
     pub messages: BandMessages<'a>,
     /// Retraces doubtful samples in double precision, if they are retraced.
-    pub reference: Option<&'a dyn Retracer>,
+    pub retracer: Option<&'a dyn Retracer>,
     /// Scratch memory shared with other bands of the plan.
     pub workspace_pool: &'a WorkspacePool,
     /// Says when to stop, and counts pixels.
@@ -97,8 +97,8 @@ impl<R: SimdReal> Band<'_, R> {
             return Some(Rays::default());
         }
         let (plan, stop) = (self.plan, &self.control.stop);
-        let left = self.workspace_pool.take::<BandScratch<L>>();
-        let mut scratch = left.unwrap_or_else(|| Box::new(BandScratch::new(self.in_squares)));
+        let reused = self.workspace_pool.take::<BandScratch<L>>();
+        let mut scratch = reused.unwrap_or_else(|| Box::new(BandScratch::new(self.in_squares)));
         let BandScratch {
             work,
             sampler,
@@ -106,9 +106,9 @@ impl<R: SimdReal> Band<'_, R> {
             in_band,
             in_tile,
         } = &mut *scratch;
-        let ways = (stop, self.reference);
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, ways);
-        in_band.keep_seen(self.seen, plan, &self.rows, Span::Rows);
+        let retracing = (stop, self.retracer);
+        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, retracing);
+        in_band.keep_seen(self.candidates, plan, &self.rows, Span::Rows);
         for left in self.columns.clone().step_by(self.tile) {
             let tile = Tile {
                 columns: left..(left + self.tile).min(self.columns.end),
@@ -124,7 +124,7 @@ impl<R: SimdReal> Band<'_, R> {
             }
             let (stride, channels) = match self.sampling {
                 Sampling::Centres if self.grid == Grid::ALL => {
-                    let traced = sampler.all(&mut engine, in_tile, &tile, (0.5, 0.5));
+                    let traced = sampler.one_per_pixel(&mut engine, in_tile, &tile, (0.5, 0.5));
                     (tile.width(), traced.channels())
                 }
                 Sampling::Centres => {
@@ -142,16 +142,16 @@ impl<R: SimdReal> Band<'_, R> {
                         only_pixels,
                     } = self.messages;
                     if let Some(only_pixels) = only_pixels {
-                        let looked = (limits, messages, only_pixels);
-                        sampler.notified_pixels(&mut engine, in_tile, &tile, looked, colors);
+                        let edge_context = (limits, messages, only_pixels);
+                        sampler.notified_pixels(&mut engine, in_tile, &tile, edge_context, colors);
                         if engine.is_stopped() {
                             return None;
                         }
-                        self.write(&tile, sampler.notified(), colors);
+                        self.write_pixels(&tile, sampler.notified(), colors);
                         continue;
                     }
-                    let looked = (limits, messages);
-                    sampler.adaptive(&mut engine, in_tile, &tile, looked, colors);
+                    let edge_context = (limits, messages);
+                    sampler.adaptive(&mut engine, in_tile, &tile, edge_context, colors);
                     (colors.stride, colors.channels())
                 }
             };
@@ -186,7 +186,7 @@ impl<R: SimdReal> Band<'_, R> {
     }
 
     /// Overwrites some pixels of a tile, given by row and column in the tile.
-    fn write(&mut self, tile: &Tile, pixels: &[[usize; 2]], colors: &TileColors<R>) {
+    fn write_pixels(&mut self, tile: &Tile, pixels: &[[usize; 2]], colors: &TileColors<R>) {
         for &[row, column] in pixels {
             let index = row * colors.stride + column;
             let color = colors.channels().map(|channel| channel[index]);

@@ -160,7 +160,7 @@ impl<L: SimdFloat> Bounds<L> {
 
     /// The box around the boxes of all lanes; its `low` is above its `high` if no point was added.
     #[inline(always)]
-    pub fn around(&self) -> BoundingBox<L::Real> {
+    pub fn bounding_box(&self) -> BoundingBox<L::Real> {
         BoundingBox {
             low: Vec3::new(self.low.x.least(), self.low.y.least(), self.low.z.least()),
             high: Vec3::new(
@@ -174,7 +174,7 @@ impl<L: SimdFloat> Bounds<L> {
     /// The ball around the box of all lanes; `None` if no point was added.
     #[inline(always)]
     pub fn ball(&self) -> Option<Ball> {
-        let BoundingBox { low, high } = self.around();
+        let BoundingBox { low, high } = self.bounding_box();
         let (low, high) = (low.to_dvec3(), high.to_dvec3());
         let radius = (high - low).length() * 0.5;
         radius.is_finite().then(|| Ball {

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use super::cell::Cell;
 use super::messages::{ABOVE, ALL, BELOW, EdgeMessages, LEFT, RIGHT};
-use super::thresholds::FINEST;
+use super::thresholds::PIXEL_STEPS;
 use super::tile::Tile;
 
 /// For the pixels of a tile and those around it, the sides from which they need no more messages.
@@ -30,11 +30,11 @@ pub struct Side {
 }
 
 /// A pixel adjacent to a side.
-pub enum Listener {
-    /// A pixel of the tile, as an unwatched cell, see [`Cell::unwatched`].
-    Here(Cell),
+pub enum AdjacentPixel {
+    /// A pixel of the tile, as a cell with signatures only, see [`Cell::signatures_only`].
+    InTile(Cell),
     /// A pixel of another tile, by its row and column in the picture.
-    Elsewhere([usize; 2]),
+    InOtherTile([usize; 2]),
 }
 
 impl PixelSides {
@@ -57,10 +57,10 @@ impl PixelSides {
         self.known.resize(self.stride * (height + 2), 0);
         // There are no pixels to notify beyond the edges.
         let before = tile.rows.start.checked_sub(1);
-        if !before.is_some_and(|row| messages.has(row)) {
+        if !before.is_some_and(|row| messages.has_row(row)) {
             self.known[..self.stride].fill(ALL);
         }
-        if !messages.has(tile.rows.end) {
+        if !messages.has_row(tile.rows.end) {
             self.known[self.stride * (height + 1)..].fill(ALL);
         }
         let rows = self.known.chunks_exact_mut(self.stride).skip(1);
@@ -71,7 +71,7 @@ impl PixelSides {
             if tile.columns.end == messages.width() {
                 known[width + 1] = ALL;
             }
-            let messages = messages.row(row, &tile.columns);
+            let messages = messages.known_sides(row, &tile.columns);
             for (known, messages) in known[1..=width].iter_mut().zip(messages) {
                 *known = messages.load(Ordering::Relaxed);
             }
@@ -82,7 +82,7 @@ impl PixelSides {
     pub fn finish(&self, tile: &Tile, messages: &EdgeMessages) {
         let rows = self.known.chunks_exact(self.stride).skip(1);
         for (row, known) in tile.rows.clone().zip(rows) {
-            let messages = messages.row(row, &tile.columns);
+            let messages = messages.known_sides(row, &tile.columns);
             for (&known, messages) in known[1..].iter().zip(messages) {
                 if known != 0 {
                     messages.store(known, Ordering::Relaxed);
@@ -94,8 +94,8 @@ impl PixelSides {
     /// Notes that nothing more is to be learnt from some sides of a cell, if the cell is a pixel.
     #[inline(always)]
     pub fn note(&mut self, cell: &Cell, sides: u8) {
-        if usize::from(cell.side) == FINEST {
-            let index = self.place([cell.x, cell.y]);
+        if usize::from(cell.side) == PIXEL_STEPS {
+            let index = self.index_of([cell.x, cell.y]);
             self.known[index] |= sides;
         }
     }
@@ -104,20 +104,20 @@ impl PixelSides {
     /// side from which neither pixel needs messages.
     #[inline(always)]
     pub fn side_of(&self, [x, y]: [u16; 2]) -> Option<Side> {
-        let step = FINEST as u16;
+        let step = PIXEL_STEPS as u16;
         let (is_on_column, is_on_row) = (x % step == 0, y % step == 0);
         if is_on_column == is_on_row {
             return None;
         }
-        let behind = self.place([x, y]);
+        let behind = self.index_of([x, y]);
         let (before, end, start) = if is_on_column {
             (behind - 1, RIGHT, LEFT)
         } else {
             (behind - self.stride, BELOW, ABOVE)
         };
-        let listens =
+        let needs_messages =
             |index: usize, side: u8| (self.known[index] & side == 0).then_some((index, side));
-        let notified_pixels = [listens(before, end), listens(behind, start)];
+        let notified_pixels = [needs_messages(before, end), needs_messages(behind, start)];
         if notified_pixels == [None; 2] {
             return None;
         }
@@ -134,39 +134,39 @@ impl PixelSides {
     }
 
     /// Returns the pixel at an index; `None` if it is above or left of the picture.
-    pub fn listener(&self, index: usize) -> Option<Listener> {
+    pub fn adjacent_pixel(&self, index: usize) -> Option<AdjacentPixel> {
         let pixel = self.pixel(index)?;
         Some(if self.is_inside(index) {
-            Listener::Here(self.cell_of(pixel))
+            AdjacentPixel::InTile(self.cell_of(pixel))
         } else {
-            Listener::Elsewhere(pixel)
+            AdjacentPixel::InOtherTile(pixel)
         })
     }
 
-    /// Returns a pixel of the tile, by its row and column in the picture, as an unwatched cell, see
-    /// [`Cell::unwatched`].
+    /// Returns a pixel of the tile, by its row and column in the picture, as a cell with signatures only, see
+    /// [`Cell::signatures_only`].
     pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
         let [top, left] = self.first;
-        Cell::pixel(column - left, row - top, false).unwatched()
+        Cell::pixel(column - left, row - top, false).signatures_only()
     }
 
-    fn pixel(&self, place: usize) -> Option<[usize; 2]> {
+    fn pixel(&self, index: usize) -> Option<[usize; 2]> {
         let [top, left] = self.first;
-        let row = (top + place / self.stride).checked_sub(1)?;
-        let column = (left + place % self.stride).checked_sub(1)?;
+        let row = (top + index / self.stride).checked_sub(1)?;
+        let column = (left + index % self.stride).checked_sub(1)?;
         Some([row, column])
     }
 
-    fn is_inside(&self, place: usize) -> bool {
-        let (row, column) = (place / self.stride, place % self.stride);
+    fn is_inside(&self, index: usize) -> bool {
+        let (row, column) = (index / self.stride, index % self.stride);
         let rows = self.known.len() / self.stride;
         0 < row && row + 1 < rows && 0 < column && column + 1 < self.stride
     }
 
     /// Index of the pixel to the lower right of a grid point.
     #[inline(always)]
-    fn place(&self, [x, y]: [u16; 2]) -> usize {
-        (usize::from(y) / FINEST + 1) * self.stride + usize::from(x) / FINEST + 1
+    fn index_of(&self, [x, y]: [u16; 2]) -> usize {
+        (usize::from(y) / PIXEL_STEPS + 1) * self.stride + usize::from(x) / PIXEL_STEPS + 1
     }
 }
 
@@ -176,13 +176,13 @@ mod tests {
 
     #[test]
     fn sides_tell_the_pixels_beside_them_that_do_not_know_yet() {
-        let step = FINEST as u16;
+        let step = PIXEL_STEPS as u16;
         let tile = Tile {
             columns: 4..7,
             rows: 0..2,
         };
         let messages = EdgeMessages::new(7, 0..4);
-        messages.row(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
+        messages.known_sides(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
         let mut borders = PixelSides::new();
         borders.start(&tile, &messages);
         let notified_pixels = |borders: &PixelSides, point: [u16; 2]| {
@@ -190,7 +190,7 @@ mod tests {
             let pixels = side.notified_pixels.into_iter().flatten();
             Some(
                 pixels
-                    .filter_map(|(place, side)| Some((borders.pixel(place)?, side)))
+                    .filter_map(|(index, side)| Some((borders.pixel(index)?, side)))
                     .collect(),
             )
         };
@@ -215,8 +215,8 @@ mod tests {
             .side_of([0, 1])
             .and_then(|side| side.notified_pixels[0])
             .expect("one");
-        let left = borders.listener(left);
-        assert!(matches!(left, Some(Listener::Elsewhere([0, 3]))));
+        let left = borders.adjacent_pixel(left);
+        assert!(matches!(left, Some(AdjacentPixel::InOtherTile([0, 3]))));
         assert_eq!(notified_pixels(&borders, [3 * step, 1]), None);
         assert_eq!(
             notified_pixels(&borders, [1, 0]),
@@ -225,7 +225,7 @@ mod tests {
         assert_eq!(notified_pixels(&borders, [step, step]), None, "a corner");
         assert_eq!(notified_pixels(&borders, [1, 1]), None, "inside");
         borders.finish(&tile, &messages);
-        let known = messages.row(1, &(3..6)).iter();
+        let known = messages.known_sides(1, &(3..6)).iter();
         let known: Vec<u8> = known.map(|sides| sides.load(Ordering::Relaxed)).collect();
         assert_eq!(known, [0, ALL, LEFT | ABOVE]);
     }

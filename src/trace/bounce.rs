@@ -6,7 +6,7 @@ use super::doubt::Uncertainty;
 use super::entry_points::EntryPoints;
 use super::mixed_materials::MixedMaterials;
 use super::order::Order;
-use super::outcome::{clamped, joined, signatures_of, store};
+use super::outcome::{clamped, join_signatures, signatures_of, store};
 use super::packet::{EdgeInfo, Packet, ReflectionParent, list_doubtful};
 use super::samples::{EdgeDetail, Traced};
 use crate::plan::Plan;
@@ -25,7 +25,7 @@ pub struct Bounce<L: SimdFloat> {
     /// One entry per packet, if doubtful hits are noted.
     pub uncertainties: Vec<Uncertainty<L>>,
     /// What the rays can meet.
-    pub seen: Candidates,
+    pub candidates: Candidates,
     /// Where the rays enter the trees.
     pub entry_points: EntryPoints,
     /// Candidates that may slip between samples.
@@ -63,7 +63,7 @@ impl<L: SimdFloat> Bounce<L> {
             edge_detail: EdgeDetail::Ignored,
             edges: Vec::new(),
             uncertainties: Vec::new(),
-            seen: Candidates::default(),
+            candidates: Candidates::default(),
             entry_points: EntryPoints::default(),
             thin: Candidates::default(),
             lights: plan.lights.iter().map(candidates_of).collect(),
@@ -90,13 +90,18 @@ impl<L: SimdFloat> Bounce<L> {
     #[inline(always)]
     pub fn take_colors(&mut self, mirrored: &Self) {
         for (packet, parent) in mirrored.packets.iter().zip(&mirrored.parents) {
-            let own = &mut self.packets[parent.packet];
+            let parent_packet = &mut self.packets[parent.packet];
             let added = parent.filter.filter(clamped(packet.color));
-            own.color = Vec3::select(packet.active, own.color + added, own.color);
+            parent_packet.color = Vec3::select(
+                packet.active,
+                parent_packet.color + added,
+                parent_packet.color,
+            );
         }
         for (index, mirrored_on) in mirrored.uncertainties.iter().enumerate() {
-            let own = &mut self.uncertainties[mirrored.parents[index].packet];
-            own.doubt = own.doubt | mirrored_on.doubt & mirrored.packets[index].active;
+            let parent_rays = &mut self.uncertainties[mirrored.parents[index].packet];
+            parent_rays.doubt =
+                parent_rays.doubt | mirrored_on.doubt & mirrored.packets[index].active;
         }
     }
 
@@ -106,14 +111,19 @@ impl<L: SimdFloat> Bounce<L> {
         for (index, edge) in mirrored.edges.iter().enumerate() {
             let active = mirrored.packets[index].active;
             let parent = mirrored.parents[index].packet;
-            let own = &mut self.edges[parent];
-            own.near = L::select(active, edge.near.min(own.near), own.near);
-            own.mirrored_shadows = L::select(active, edge.shadows, own.mirrored_shadows);
+            let parent_edge = &mut self.edges[parent];
+            parent_edge.thin_distance = L::select(
+                active,
+                edge.thin_distance.min(parent_edge.thin_distance),
+                parent_edge.thin_distance,
+            );
+            parent_edge.mirrored_shadows =
+                L::select(active, edge.shadows, parent_edge.mirrored_shadows);
             let active = active.bits();
             let theirs = &mirrored.signatures[index];
-            for (lane, own) in self.signatures[parent].iter_mut().enumerate() {
+            for (lane, signature) in self.signatures[parent].iter_mut().enumerate() {
                 if active >> lane & 1 == 1 {
-                    *own = joined(*own, theirs[lane]);
+                    *signature = join_signatures(*signature, theirs[lane]);
                 }
             }
         }
@@ -121,7 +131,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Computes the signatures: what each ray has hit, and which lights shine on it.
     #[inline(always)]
-    pub fn sign(&mut self, plan: &Plan<L::Real>) {
+    pub fn compute_signatures(&mut self, plan: &Plan<L::Real>) {
         self.signatures.clear();
         for (packet, edge) in self.packets.iter().zip(&self.edges) {
             self.signatures.push(signatures_of(plan, packet, edge));
@@ -129,9 +139,9 @@ impl<L: SimdFloat> Bounce<L> {
     }
 
     /// Lists which of the first `count` samples are in doubt.
-    pub fn list_doubtful(&self, count: usize, places: &mut Vec<u32>) {
+    pub fn list_doubtful(&self, count: usize, indices: &mut Vec<u32>) {
         let notes = (&self.packets[..], &self.uncertainties[..]);
-        list_doubtful(notes, &self.order.samples, count, places);
+        list_doubtful(notes, &self.order.samples, count, indices);
     }
 
     /// Writes the results, sample by sample; `unsorted` is scratch memory, used if the rays were reordered.

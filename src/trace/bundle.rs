@@ -6,9 +6,9 @@ use crate::primitive::{Blur, BoundingBox, CAUTION, Ray, inverse, roundings};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
 /// Length of the longest line in a box, in units of its longest side: √3, rounded up.
-const LONGEST: f64 = 1.75;
+const BOX_DIAGONAL: f64 = 1.75;
 /// Rounding error of a ray that is aimed at a point, in units of the rounding error of its start.
-const ROUNDED_TWICE: f64 = 2.0;
+const AIM_ROUNDINGS: f64 = 2.0;
 
 /// Rays, and the intervals that contain them along each axis.
 #[derive(Clone, Copy, Debug)]
@@ -65,17 +65,17 @@ impl<L: SimdFloat> Bundle<L> {
         reach: L::Real,
     ) -> Self {
         let origin = rays.origin.like(point);
-        let ways = rays.origin - origin;
-        let far = origin.x.like(reach + point.max_abs());
+        let to_starts = rays.origin - origin;
+        let extent = origin.x.like(reach + point.max_abs());
         // Nothing is farther from the point than this. Rays that start farther away are off by more there than
         // within this distance.
-        let deepest = far * far.like_f64(LONGEST);
-        let size = (rays.origin.max_abs() + far).min(deepest + deepest);
+        let max_distance = extent * extent.like_f64(BOX_DIAGONAL);
+        let size = (rays.origin.max_abs() + extent).min(max_distance + max_distance);
         // A ray misses the point by the rounding errors of its start and its direction.
-        let rounded = size * size.like_f64(ROUNDED_TWICE) * size.like(roundings());
-        let from = (ways.length() - deepest).max(far.like(L::Real::ZERO));
+        let rounded = size * size.like_f64(AIM_ROUNDINGS) * size.like(roundings());
+        let from = (to_starts.length() - max_distance).max(extent.like(L::Real::ZERO));
         let slack = rounded + blur_margin(blur, from, size);
-        Self::from_slack(origin, slack, ways, active)
+        Self::from_slack(origin, slack, to_starts, active)
     }
 
     #[inline(always)]
@@ -100,7 +100,7 @@ impl<L: SimdFloat> Bundle<L> {
 
     /// From now on, counts every box as met.
     #[inline(always)]
-    pub fn meet_all(&mut self) {
+    pub fn accept_all_boxes(&mut self) {
         self.is_boxed = false;
         for axis in &mut self.shaft.axes {
             axis.entry_plane = None;
@@ -129,7 +129,13 @@ impl<L: SimdFloat> Bundle<L> {
     /// Returns which rays meet the box at `index` of a node, or pass within `margin` of it, before their own
     /// `reach`, by the slab method of Kay and Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986.
     #[inline(always)]
-    pub fn each_meets(&self, node: &Node, index: usize, reach: L, margin: L::Real) -> L::Mask {
+    pub fn lanes_meeting_box(
+        &self,
+        node: &Node,
+        index: usize,
+        reach: L,
+        margin: L::Real,
+    ) -> L::Mask {
         let mut near = reach.like(L::Real::ZERO);
         let mut far = reach;
         let [below, above] = &self.origins;
@@ -159,7 +165,7 @@ impl<L: SimdFloat> Bundle<L> {
     /// Returns which boxes of a node any of the rays in `lanes` meets before its own `reach`, as bits; sets `nears`
     /// to the least distances at which they are entered.
     #[inline(always)]
-    pub fn few_meet(
+    pub fn boxes_met_by_lanes(
         &self,
         mut lanes: u64,
         node: &Node,
@@ -175,7 +181,7 @@ impl<L: SimdFloat> Bundle<L> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
-            let (ray, reach) = (self.ray(lane), L::splat(token, reach.lane(lane)));
+            let (ray, reach) = (self.lane_shaft(lane), L::splat(token, reach.lane(lane)));
             for first in (0..node.count).step_by(L::WIDTH) {
                 let (near, is_met) = ray.slabs::<L>(node, first, reach, None);
                 let before = L::load(token, &nears[first..]);
@@ -188,7 +194,7 @@ impl<L: SimdFloat> Bundle<L> {
 
     /// The shaft of a single ray.
     #[inline(always)]
-    fn ray(&self, lane: usize) -> Shaft<L::Real> {
+    fn lane_shaft(&self, lane: usize) -> Shaft<L::Real> {
         let [below, above] = &self.origins;
         let axis = |below: L, above: L, inverse: L| {
             let inverse = inverse.lane(lane);
@@ -248,7 +254,7 @@ impl<R: Real> Shaft<R> {
     /// Returns which boxes of a node hold something thin and may be passed closely by a ray before `reach`, as
     /// bits; sets `widths` to the greatest width of a pixel at each box.
     #[inline(always)]
-    pub fn grazes<L: SimdFloat<Real = R>>(
+    pub fn meets_thin<L: SimdFloat<Real = R>>(
         &self,
         token: L::Token,
         node: &Node,
@@ -258,14 +264,15 @@ impl<R: Real> Shaft<R> {
     ) -> u64 {
         let mut bits = 0;
         for first in (0..node.count).step_by(L::WIDTH) {
-            let mut width = self.distance::<L>(token, node, first) * L::splat(token, margin.spread)
+            let mut width = self.max_distance::<L>(token, node, first)
+                * L::splat(token, margin.spread)
                 + L::splat(token, margin.width);
             if R::ZERO < margin.narrowing {
-                width = margin.narrowed(width, self.gap::<L>(token, node, first));
+                width = margin.narrowed(width, self.min_distance::<L>(token, node, first));
             }
             width.store(&mut widths[first..]);
             let thickness = L::load_singles(token, &node.thickness[first..]);
-            let is_thin = thickness.less(width * L::splat(token, margin.thickest));
+            let is_thin = thickness.less(width * L::splat(token, margin.max_thickness));
             if is_thin.any() {
                 let reach = margin.end(L::splat(token, reach), width);
                 let (_, is_met) = self.slabs(node, first, reach, Some(width));
@@ -277,10 +284,10 @@ impl<R: Real> Shaft<R> {
 
     /// Upper bound of the distance from the start of any ray to the farthest corner of each box.
     #[inline(always)]
-    fn distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
+    fn max_distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
         let mut sum = L::splat(token, R::ZERO);
-        for (axis, common) in self.axes.iter().enumerate() {
-            let [one, other] = common.origins;
+        for (axis, interval) in self.axes.iter().enumerate() {
+            let [one, other] = interval.origins;
             let low = L::load_singles(token, &node.planes[0][axis][from..]);
             let high = L::load_singles(token, &node.planes[1][axis][from..]);
             let above = high - L::splat(token, one.min(other));
@@ -292,10 +299,10 @@ impl<R: Real> Shaft<R> {
 
     /// Lower bound of the distance from the start of any ray to each box: the greatest along one axis.
     #[inline(always)]
-    fn gap<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
+    fn min_distance<L: SimdFloat<Real = R>>(&self, token: L::Token, node: &Node, from: usize) -> L {
         let mut gap = L::splat(token, R::ZERO);
-        for (axis, common) in self.axes.iter().enumerate() {
-            let [one, other] = common.origins;
+        for (axis, interval) in self.axes.iter().enumerate() {
+            let [one, other] = interval.origins;
             let low = L::load_singles(token, &node.planes[0][axis][from..]);
             let high = L::load_singles(token, &node.planes[1][axis][from..]);
             let above = low - L::splat(token, one.max(other));
@@ -318,20 +325,20 @@ impl<R: Real> Shaft<R> {
         let token = reach.token();
         let mut near = L::splat(token, R::ZERO);
         let mut far = reach;
-        for (axis, common) in self.axes.iter().enumerate() {
-            let Some(first) = common.entry_plane else {
+        for (axis, interval) in self.axes.iter().enumerate() {
+            let Some(first) = interval.entry_plane else {
                 continue;
             };
             let enter = L::load_singles(token, &node.planes[first][axis][from..]);
             let leave = L::load_singles(token, &node.planes[1 - first][axis][from..]);
-            let mut enter = enter - L::splat(token, common.origins[0]);
-            let mut leave = leave - L::splat(token, common.origins[1]);
+            let mut enter = enter - L::splat(token, interval.origins[0]);
+            let mut leave = leave - L::splat(token, interval.origins[1]);
             if let Some(margin) = margin {
                 let outwards = if first == 0 { margin } else { -margin };
                 enter = enter - outwards;
                 leave = leave + outwards;
             }
-            let [least, greatest] = common.inverse;
+            let [least, greatest] = interval.inverse;
             let (least, greatest) = (L::splat(token, least), L::splat(token, greatest));
             near = near.max((enter * least).min(enter * greatest));
             far = far.min((leave * least).max(leave * greatest));
@@ -393,7 +400,7 @@ impl<R: Real> ShaftAxis<R> {
 pub fn blur_margin<L: SimdFloat>(blur: &Blur<L>, from: L, size: L) -> L {
     if L::Real::IS_FILTERED {
         // As much as hits may be in doubt, along the longest path through the scene.
-        let longest = from + size * size.like_f64(LONGEST);
+        let longest = from + size * size.like_f64(BOX_DIAGONAL);
         blur.between(from, longest) * size.like_f64(1.0 + CAUTION)
     } else {
         size.like(L::Real::ZERO)

@@ -121,7 +121,7 @@ impl Candidates {
 
     /// Returns how many candidates may have outlines of their own, see [`Primitive::has_outline`]: 0, 1, or 2 for
     /// two or more.
-    pub fn outlines<R: Real>(&self, plan: &Plan<R>) -> usize {
+    pub fn outline_count<R: Real>(&self, plan: &Plan<R>) -> usize {
         let all = &plan.primitives.triangles;
         let triangles = self.of(Kind::Triangle).iter();
         let loose = triangles.filter(|&&index| all[index as usize].has_outline());
@@ -181,7 +181,7 @@ impl Candidates {
                 let (at, reach) = geometry.bvh.bounds.ball();
                 geometry.bvh.thinnest < width(at, reach)
             });
-        plan.primitives.visit(&mut Narrow {
+        plan.primitives.visit(&mut NarrowFilter {
             from,
             to: self,
             width,
@@ -194,8 +194,8 @@ impl Candidates {
         let firsts = plan.primitives.firsts();
         for &ball in balls {
             let number = plan.in_balls[ball as usize];
-            let later = firsts.iter().filter(|&&first| first <= number as usize);
-            let kind = later.count() - 1;
+            let started_kinds = firsts.iter().filter(|&&first| first <= number as usize);
+            let kind = started_kinds.count() - 1;
             let index = number - firsts[kind] as u32;
             let is_omitted = match omit {
                 Omit::Nothing => false,
@@ -211,13 +211,13 @@ impl Candidates {
     }
 }
 
-struct Narrow<'a, W> {
+struct NarrowFilter<'a, W> {
     from: &'a Candidates,
     to: &'a mut Candidates,
     width: W,
 }
 
-impl<R: Real, W: Fn(Vec3<R>, R) -> R> Visit<R> for Narrow<'_, W> {
+impl<R: Real, W: Fn(Vec3<R>, R) -> R> Visit<R> for NarrowFilter<'_, W> {
     fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
         let narrow = self.from.of(kind).iter().filter(|&&index| {
             let primitive = &primitives[index as usize];

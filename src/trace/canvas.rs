@@ -39,7 +39,7 @@ impl<P> Pixels<'_, P> {
 impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     fn fill(&mut self, tile: &Tile, stride: usize, channels: [&[R]; 3]) {
         let [left, top] = [self.place.columns.0, self.place.rows.0];
-        self.level.run(Filled {
+        self.level.run(FillRows {
             rows: &mut self.rows[tile.rows.start - top..tile.rows.end - top],
             columns: tile.columns.start - left..tile.columns.end - left,
             stride,
@@ -59,14 +59,14 @@ impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
 }
 
 /// Columns of rows of pixels, and the colours that they are set to.
-struct Filled<'a, 'b, R, P> {
+struct FillRows<'a, 'b, R, P> {
     rows: &'a mut [&'b mut [P]],
     columns: Range<usize>,
     stride: usize,
     channels: [&'a [R]; 3],
 }
 
-impl<R: SimdReal, P: Pixel> WithSimd<R> for Filled<'_, '_, R, P> {
+impl<R: SimdReal, P: Pixel> WithSimd<R> for FillRows<'_, '_, R, P> {
     type Output = ();
 
     /// Uses no lanes explicitly: the compiler vectorises the loop with the instructions that are enabled here.

@@ -1,7 +1,7 @@
 //! Cells: squares between samples, which are pixels or parts of them.
 
 use super::samples::EdgeDetail;
-use super::thresholds::FINEST;
+use super::thresholds::PIXEL_STEPS;
 use super::tile::TileColors;
 use crate::simd::Real;
 
@@ -28,10 +28,10 @@ impl Cell {
     /// A pixel of a tile, whose samples are not known yet.
     pub fn pixel(column: usize, row: usize, may_hide_face: bool) -> Self {
         Self {
-            x: (column * FINEST) as u16,
-            y: (row * FINEST) as u16,
-            side: FINEST as u16,
-            detail: EdgeDetail::Near,
+            x: (column * PIXEL_STEPS) as u16,
+            y: (row * PIXEL_STEPS) as u16,
+            side: PIXEL_STEPS as u16,
+            detail: EdgeDetail::Thin,
             swaps_lights: false,
             may_hide_face,
             corners: [0; 4],
@@ -40,26 +40,26 @@ impl Cell {
 
     /// The same cell, at whose corners nothing but signatures was looked for: neither what may slip between
     /// samples, nor the shadows and faces that end near them.
-    pub fn unwatched(self) -> Self {
+    pub fn signatures_only(self) -> Self {
         Self {
-            detail: EdgeDetail::Signed,
+            detail: EdgeDetail::Signatures,
             ..self
         }
     }
 
     /// Row and column of the pixel that contains it.
     pub fn row_and_column(&self) -> [usize; 2] {
-        [self.y, self.x].map(|place| usize::from(place) / FINEST)
+        [self.y, self.x].map(|place| usize::from(place) / PIXEL_STEPS)
     }
 
     /// Index of the pixel that contains it, with `stride` pixels per row.
     #[inline(always)]
     pub fn pixel_in(&self, stride: usize) -> usize {
-        self.y as usize / FINEST * stride + self.x as usize / FINEST
+        self.y as usize / PIXEL_STEPS * stride + self.x as usize / PIXEL_STEPS
     }
 
     /// Its corners on the finest grid: upper left and right, lower left and right.
-    pub fn places(&self) -> [(u16, u16); 4] {
+    pub fn corner_points(&self) -> [(u16, u16); 4] {
         let (left, top) = (self.x, self.y);
         let (right, bottom) = (left + self.side, top + self.side);
         [(left, top), (right, top), (left, bottom), (right, bottom)]
@@ -68,7 +68,7 @@ impl Cell {
     /// Length of its side in pixels.
     #[inline(always)]
     pub fn width(&self) -> f64 {
-        f64::from(self.side) / FINEST as f64
+        f64::from(self.side) / PIXEL_STEPS as f64
     }
 
     /// Adds its colour (red, green, blue, and a number that is ignored), weighted by its area, to its pixel.

@@ -15,12 +15,12 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// Coincident surfaces are searched for along the rays up to this many times the distance allowed between them:
 /// that is how far apart they are along a ray at 89 degrees from the normal.
-const SLANT: f64 = 64.0;
+const GRAZING_FACTOR: f64 = 64.0;
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Returns the nearest hits, replaced where another object in the same surface is to be shown.
     #[inline(never)]
-    pub fn settled(
+    pub fn resolve_ties(
         self,
         targets: Targets<L::Real>,
         (paths, blur): (&Paths<L>, Blur<L>),
@@ -31,58 +31,58 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             self.token,
             #[inline(always)]
             || {
-                let mut settled = nearest;
+                let mut resolved = nearest;
                 let infinity = self.infinity();
-                let mut left = nearest.t.less(infinity).bits();
-                while left != 0 {
-                    let lane = left.trailing_zeros() as usize;
-                    left &= left - 1;
+                let mut remaining = nearest.t.less(infinity).bits();
+                while remaining != 0 {
+                    let lane = remaining.trailing_zeros() as usize;
+                    remaining &= remaining - 1;
                     let number = nearest.number.lane(lane).to_f64() as usize;
                     let Some(tie) = self.plan.tie_of(number) else {
                         continue;
                     };
                     let Range { start, end } = tie.numbers;
                     let (start, end) = (self.splat(start as f64), self.splat(end as f64));
-                    let here = start.at_most(nearest.number) & nearest.number.less(end);
-                    left &= !here.bits();
+                    let lanes = start.at_most(nearest.number) & nearest.number.less(end);
+                    remaining &= !lanes.bits();
                     let mut test = CoincidentTest {
                         methods: &self.plan.methods,
-                        over: &tie.over,
-                        met: nearest,
-                        apart: (nearest.t + nearest.t.like(self.plan.extent))
+                        ranked: &tie.over,
+                        nearest_hit: nearest,
+                        max_separation: (nearest.t + nearest.t.like(self.plan.extent))
                             * nearest.t.like(self.plan.clearance),
-                        here,
+                        lanes,
                         found: Nearest {
                             t: infinity,
-                            number: settled.number,
+                            number: resolved.number,
                         },
                         rank: infinity,
                     };
-                    self.meet_all(&tie.over, paths, &mut test);
+                    self.test_listed(&tie.over, paths, &mut test);
                     if tie.over.are_in_tree()
-                        && let Some(tree_scan) = self.tree_scan(targets, (here, blur))
+                        && let Some(tree_scan) = self.tree_scan(targets, (lanes, blur))
                     {
                         tree_scan.scan(paths, stack, &mut test);
                     }
                     let (found, is_found) = (test.found, test.rank.less(infinity));
-                    settled.t = L::select(is_found, found.t, settled.t);
-                    settled.number = L::select(is_found, found.number, settled.number);
+                    resolved.t = L::select(is_found, found.t, resolved.t);
+                    resolved.number = L::select(is_found, found.number, resolved.number);
                 }
-                settled
+                resolved
             },
         )
     }
 
     /// Tests those of the objects that are in no tree.
     #[inline(always)]
-    fn meet_all(self, over: &RankedObjects, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
-        for number in over.listed() {
-            let meet = TestListed {
+    fn test_listed(self, ranked: &RankedObjects, paths: &Paths<L>, test: &mut CoincidentTest<L>) {
+        for number in ranked.listed() {
+            let test_primitive = TestListed {
                 paths,
                 number,
                 test: &mut *test,
             };
-            self.plan.primitives.with(number, meet);
+            self.plan.primitives.with(number, test_primitive);
         }
     }
 }
@@ -90,12 +90,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 /// Looks for the first of some objects that is hit where another one was.
 struct CoincidentTest<'a, L: SimdFloat> {
     methods: &'a Methods,
-    over: &'a RankedObjects,
-    met: Nearest<L>,
+    ranked: &'a RankedObjects,
+    nearest_hit: Nearest<L>,
     /// Greatest distance between the two hits across the surface.
-    apart: L,
+    max_separation: L,
     /// The lanes in which it is looked for.
-    here: L::Mask,
+    lanes: L::Mask,
     found: Nearest<L>,
     /// Its place in the order of objects; infinity while nothing is found.
     rank: L,
@@ -104,8 +104,9 @@ struct CoincidentTest<'a, L: SimdFloat> {
 impl<L: SimdFloat> Test<L> for CoincidentTest<'_, L> {
     #[inline(always)]
     fn reach(&self) -> L {
-        let reach = self.met.t + self.apart * self.apart.like_f64(SLANT);
-        L::select(self.here, reach, reach.like_f64(-1.0))
+        let reach =
+            self.nearest_hit.t + self.max_separation * self.max_separation.like_f64(GRAZING_FACTOR);
+        L::select(self.lanes, reach, reach.like_f64(-1.0))
     }
 
     #[inline(always)]
@@ -116,19 +117,19 @@ impl<L: SimdFloat> Test<L> for CoincidentTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let Some(rank) = self.over.rank_of(number) else {
+        let Some(rank) = self.ranked.rank_of(number) else {
             return;
         };
         let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);
-        let met = self.here & t.less(t.like(L::Real::INFINITY));
+        let met = self.lanes & t.less(t.like(L::Real::INFINITY));
         let rank = t.like(real(rank));
         if !(met & rank.at_most(self.rank)).any() {
             return;
         }
         let normal = primitive.refine(&paths.rays, t).normal;
-        let across = (t - self.met.t).abs() * normal.dot(paths.rays.direction).abs();
+        let across = (t - self.nearest_hit.t).abs() * normal.dot(paths.rays.direction).abs();
         let is_nearer = rank.less(self.rank) | (rank.same(self.rank) & t.less(self.found.t));
-        let found = met & across.at_most(self.apart) & is_nearer;
+        let found = met & across.at_most(self.max_separation) & is_nearer;
         self.rank = L::select(found, rank, self.rank);
         self.found.t = L::select(found, t, self.found.t);
         self.found.number = L::select(found, t.like(real(number)), self.found.number);

@@ -14,14 +14,14 @@ pub struct RenderControl {
     /// Whether the trace shall pause: every thread checks it before every piece.
     is_paused: AtomicBool,
     pause: Mutex<Pause>,
-    gone_on: Condvar,
+    resumed: Condvar,
 }
 
 /// How long a trace has been paused.
 #[derive(Debug, Default)]
 struct Pause {
     /// Total of the pauses that have ended.
-    before: Duration,
+    completed: Duration,
     /// Start of the current pause, if there is one.
     since: Option<Instant>,
 }
@@ -49,11 +49,11 @@ impl RenderControl {
     pub fn go_on(&self) {
         let mut pause = self.lock();
         if let Some(since) = pause.since.take() {
-            pause.before += since.elapsed();
+            pause.completed += since.elapsed();
         }
         self.is_paused.store(false, Ordering::Relaxed);
         drop(pause);
-        self.gone_on.notify_all();
+        self.resumed.notify_all();
     }
 
     /// Returns whether the trace shall pause.
@@ -64,7 +64,7 @@ impl RenderControl {
     /// Returns how long the trace has been paused so far.
     pub fn paused(&self) -> Duration {
         let pause = self.lock();
-        pause.before + pause.since.map_or(Duration::ZERO, |since| since.elapsed())
+        pause.completed + pause.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
     /// Starts a stopwatch that does not count pauses.
@@ -77,13 +77,13 @@ impl RenderControl {
     }
 
     /// Blocks until there is no pause, or the trace is stopped.
-    pub(super) fn wait(&self) {
+    pub(super) fn wait_while_paused(&self) {
         if !self.is_paused() {
             return;
         }
         let mut pause = self.lock();
         while pause.since.is_some() && !self.is_stopped() {
-            let woken = self.gone_on.wait(pause);
+            let woken = self.resumed.wait(pause);
             pause = woken.unwrap_or_else(PoisonError::into_inner);
         }
     }
@@ -119,10 +119,10 @@ mod tests {
     fn what_is_paused_waits_until_it_goes_on_and_the_time_does_not_count() {
         let control = RenderControl::default();
         let watch = control.stopwatch();
-        control.wait();
+        control.wait_while_paused();
         control.pause();
         std::thread::scope(|scope| {
-            let waiting = scope.spawn(|| control.wait());
+            let waiting = scope.spawn(|| control.wait_while_paused());
             std::thread::sleep(SHORT);
             assert!(!waiting.is_finished() && control.is_paused());
             control.go_on();
@@ -137,12 +137,12 @@ mod tests {
         let control = RenderControl::default();
         control.pause();
         std::thread::scope(|scope| {
-            scope.spawn(|| control.wait());
+            scope.spawn(|| control.wait_while_paused());
             std::thread::sleep(SHORT);
             control.stop();
         });
         control.pause();
-        control.wait();
+        control.wait_while_paused();
         assert!(control.is_stopped());
     }
 }

@@ -4,35 +4,35 @@
 use super::cell::Cell;
 use super::crossing::{Crossing, EdgeSide, contrast};
 use super::lattice::{CornerSample, Lattice, Limits};
-use super::samples::THING;
-use super::thresholds::{EDGE_ERROR, FINEST, GAP_CONTRAST, UNEVEN};
+use super::samples::OBJECT_BITS;
+use super::thresholds::{EDGE_ERROR, GAP_CONTRAST, PIXEL_STEPS, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
 
 /// An edge that may stay located within more steps of the finest grid than this is so faint that its shape does not
 /// matter.
-const SHAPELESS: u16 = 2;
+const FAINT_EDGE_STEPS: u16 = 2;
 /// Distances from an edge at which a sample checks whether it is straight, in multiples of the width within which
-/// the edge is located: the first of these is used whose nearest point of the finest grid is at least [`SURE`]
-/// away.
-const BESIDE: [f64; 3] = [1.1, 1.6, 2.1];
+/// the edge is located: the first of these is used whose nearest point of the finest grid is at least
+/// [`MIN_CHECK_DISTANCE`] away.
+const CHECK_DISTANCES: [f64; 3] = [1.1, 1.6, 2.1];
 /// Least distance of that sample from the edge, in the same unit: the edge's ends are off by up to a half.
-const SURE: f64 = 0.6;
+const MIN_CHECK_DISTANCE: f64 = 0.6;
 
 /// A cell that is crossed by one edge.
 #[derive(Clone, Copy, Debug)]
 pub struct CrossedCell<R> {
     cell: Cell,
     /// The corners on the first side of the edge, as bits.
-    first: u8,
+    first_corners: u8,
     /// What is seen on both sides.
     sides_seen: [EdgeSide<R>; 2],
     crossings: [Crossing; 2],
-    /// Whether `checks` is set: the points whose samples show if the edge is straight.
-    is_checked: bool,
-    checks: [Option<[u16; 2]>; 2],
+    /// Whether `check_points` is set: the points whose samples show if the edge is straight.
+    has_check_points: bool,
+    check_points: [Option<[u16; 2]>; 2],
     /// Indices of the samples at these points.
-    checked: [u32; 2],
+    check_samples: [u32; 2],
 }
 
 /// What has been found out about a cell.
@@ -56,8 +56,8 @@ impl<R: Real> CrossedCell<R> {
     /// The same for a cell whose corners all see one thing in two colours, like two faces of a mesh.
     pub fn of_colors(cell: &Cell, lattice: &Lattice<R>, limits: Limits<R>) -> Option<Self> {
         let [a, b, c, d] = lattice.corners(cell);
-        let apart = contrast(a, b).max(contrast(a, c)).max(contrast(a, d));
-        let limit = apart * R::from_f64(UNEVEN);
+        let difference = contrast(a, b).max(contrast(a, c)).max(contrast(a, d));
+        let limit = difference * R::from_f64(UNEVEN);
         let is_like = |a: &CornerSample<R>, b: &CornerSample<R>| contrast(a, b) <= limit;
         Self::new(cell, lattice, limits, (limit, is_like))
     }
@@ -76,36 +76,36 @@ impl<R: Real> CrossedCell<R> {
         for (corner, sample) in corners.iter().enumerate() {
             like_first |= u8::from(is_like(sample, corners[0])) << corner;
         }
-        let (first, sides) = sides_of(like_first)?;
+        let (first_corners, sides) = sides_of(like_first)?;
         // Written out: `map` on an array would not be inlined here.
         let crossing = |(corner, axis): (usize, usize)| {
             let (one, other) = (corners[corner], corners[corner ^ (1 << axis)]);
-            let mut apart = contrast(one, other);
-            if (one.signature ^ other.signature) & THING != 0 || cell.swaps_lights {
-                apart = apart.max(R::from_f64(GAP_CONTRAST));
+            let mut difference = contrast(one, other);
+            if (one.signature ^ other.signature) & OBJECT_BITS != 0 || cell.swaps_lights {
+                difference = difference.max(R::from_f64(GAP_CONTRAST));
             }
-            Crossing::new(cell, (corner, axis), tolerance(cell, apart, limits))
+            Crossing::new(cell, (corner, axis), tolerance(cell, difference, limits))
         };
         let [(corner, axis), other] = sides;
-        let thing = |corner: usize| EdgeSide {
-            seen: *corners[corner],
+        let edge_side = |corner: usize| EdgeSide {
+            sample: *corners[corner],
             limit,
         };
-        let sides_seen = [thing(corner), thing(corner ^ (1 << axis))];
+        let sides_seen = [edge_side(corner), edge_side(corner ^ (1 << axis))];
         for (corner, sample) in corners.iter().enumerate() {
-            let is_first = first >> corner & 1 == 1;
-            if !sides_seen[usize::from(!is_first)].is_in(sample) {
+            let is_first = first_corners >> corner & 1 == 1;
+            if !sides_seen[usize::from(!is_first)].matches(sample) {
                 return None;
             }
         }
         Some(Self {
             cell: *cell,
-            first,
+            first_corners,
             sides_seen,
             crossings: [crossing(sides[0]), crossing(other)],
-            is_checked: false,
-            checks: [None; 2],
-            checked: [0; 2],
+            has_check_points: false,
+            check_points: [None; 2],
+            check_samples: [0; 2],
         })
     }
 
@@ -120,58 +120,62 @@ impl<R: Real> CrossedCell<R> {
     }
 
     /// Requests the samples that are needed next.
-    pub fn want(&mut self, lattice: &mut Lattice<R>) {
+    pub fn request_samples(&mut self, lattice: &mut Lattice<R>) {
         for crossing in &mut self.crossings {
-            crossing.want(lattice);
+            crossing.request_samples(lattice);
         }
-        for (check, index) in self.checks.into_iter().zip(&mut self.checked) {
+        for (check, index) in self.check_points.into_iter().zip(&mut self.check_samples) {
             if let Some([x, y]) = check {
-                *index = lattice.want(x, y);
+                *index = lattice.request(x, y);
             }
         }
     }
 
     /// Evaluates the requested samples. If the colour is found, adds it to `colors`.
-    pub fn take(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> CellFinding {
-        let disorder = CellFinding::NotOneEdge(self.cell.unwatched());
+    pub fn evaluate(&mut self, lattice: &Lattice<R>, colors: &mut TileColors<R>) -> CellFinding {
+        let not_one_edge = CellFinding::NotOneEdge(self.cell.signatures_only());
         for crossing in &mut self.crossings {
             if !crossing.narrow(lattice, &self.sides_seen) {
-                return disorder;
+                return not_one_edge;
             }
         }
-        for (side, check) in self.checks.iter().enumerate() {
-            let seen = lattice.sample(self.checked[side]);
-            if check.is_some() && !self.sides_seen[side].is_in(seen) {
-                return disorder;
+        for (side, check) in self.check_points.iter().enumerate() {
+            let seen = lattice.sample(self.check_samples[side]);
+            if check.is_some() && !self.sides_seen[side].matches(seen) {
+                return not_one_edge;
             }
         }
         if !self.crossings.iter().all(Crossing::is_found) {
             return CellFinding::Nothing;
         }
-        if !self.is_checked {
-            self.is_checked = true;
-            self.checks = self.beside();
-            if self.checks != [None; 2] {
+        if !self.has_check_points {
+            self.has_check_points = true;
+            self.check_points = self.find_check_points();
+            if self.check_points != [None; 2] {
                 return CellFinding::Nothing;
             }
         }
-        self.accumulate(self.seen(lattice, 0), self.seen(lattice, 1), colors);
+        self.accumulate(
+            self.mean_color(lattice, 0),
+            self.mean_color(lattice, 1),
+            colors,
+        );
         CellFinding::Color
     }
 
     /// Returns points close to the middle of the edge, on its first and on its second side, whose samples show
     /// whether the edge is straight; `None` where that cannot or need not be checked.
-    fn beside(&self) -> [Option<[u16; 2]>; 2] {
+    fn find_check_points(&self) -> [Option<[u16; 2]>; 2] {
         let [p, q] = &self.crossings;
-        let within = (p.high - p.low).max(q.high - q.low);
-        if within > SHAPELESS {
+        let uncertainty = (p.high - p.low).max(q.high - q.low);
+        if uncertainty > FAINT_EDGE_STEPS {
             return [None; 2];
         }
-        let within = f64::from(within);
-        let ([px, py], [qx, qy]) = (p.place(), q.place());
+        let uncertainty = f64::from(uncertainty);
+        let ([px, py], [qx, qy]) = (p.position(), q.position());
         let (along_x, along_y) = (qx - px, qy - py);
         let length = (along_x * along_x + along_y * along_y).sqrt();
-        if length <= within {
+        if length <= uncertainty {
             return [None; 2]; // It cuts off a tiny corner, which does not matter.
         }
         // Perpendicular to the edge, away from the corner that the first crossing is measured from.
@@ -182,23 +186,25 @@ impl<R: Real> CrossedCell<R> {
         let middle = [(px + qx) * 0.5, (py + qy) * 0.5];
         let low = [self.cell.x, self.cell.y].map(f64::from);
         let side = f64::from(self.cell.side);
-        let beside = |sign: f64, beside: f64| {
-            let place =
-                [0, 1].map(|axis| (middle[axis] + across[axis] * sign * beside * within).round());
-            let off = (place[0] - middle[0]) * across[0] + (place[1] - middle[1]) * across[1];
-            (off * sign >= SURE * within).then_some(place)
+        let check_point = |sign: f64, distance: f64| {
+            let point = [0, 1]
+                .map(|axis| (middle[axis] + across[axis] * sign * distance * uncertainty).round());
+            let off = (point[0] - middle[0]) * across[0] + (point[1] - middle[1]) * across[1];
+            (off * sign >= MIN_CHECK_DISTANCE * uncertainty).then_some(point)
         };
-        let is_inside = |axis: usize, place: f64| low[axis] <= place && place <= low[axis] + side;
+        let is_inside = |axis: usize, point: f64| low[axis] <= point && point <= low[axis] + side;
         [-1.0, 1.0].map(|sign| {
-            let place = BESIDE.iter().find_map(|steps| beside(sign, *steps))?;
-            let is_inside = is_inside(0, place[0]) && is_inside(1, place[1]);
-            is_inside.then(|| place.map(|place| place as u16))
+            let point = CHECK_DISTANCES
+                .iter()
+                .find_map(|steps| check_point(sign, *steps))?;
+            let is_inside = is_inside(0, point[0]) && is_inside(1, point[1]);
+            is_inside.then(|| point.map(|point| point as u16))
         })
     }
 
     /// The mean of what is seen on a side, at the corners and next to the crossings.
     #[inline(always)]
-    fn seen(&self, lattice: &Lattice<R>, side: usize) -> [R; 4] {
+    fn mean_color(&self, lattice: &Lattice<R>, side: usize) -> [R; 4] {
         let (mut sum, mut count) = ([R::ZERO; 4], 0);
         let mut add = |sample: &CornerSample<R>| {
             for (sum, &value) in sum.iter_mut().zip(&sample.values) {
@@ -207,12 +213,12 @@ impl<R: Real> CrossedCell<R> {
             count += 1;
         };
         for (corner, sample) in lattice.corners(&self.cell).into_iter().enumerate() {
-            if (self.first >> corner & 1 == 1) == (side == 0) {
+            if (self.first_corners >> corner & 1 == 1) == (side == 0) {
                 add(sample);
             }
         }
         for crossing in &self.crossings {
-            add(lattice.sample(crossing.seen[side]));
+            add(lattice.sample(crossing.samples[side]));
         }
         let share = R::from_f64(1.0 / f64::from(count));
         let [red, green, blue, rest] = sum;
@@ -240,12 +246,12 @@ impl<R: Real> CrossedCell<R> {
 /// runs from there. `like_first` has the bits of the corners that see the same as the first; `None` if that is not
 /// one edge.
 fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
-    let alone = |corner: usize| Some((1 << corner, [(corner, 0), (corner, 1)]));
+    let single_corner = |corner: usize| Some((1 << corner, [(corner, 0), (corner, 1)]));
     match like_first {
-        0b0001 => alone(0),
-        0b1101 => alone(1),
-        0b1011 => alone(2),
-        0b0111 => alone(3),
+        0b0001 => single_corner(0),
+        0b1101 => single_corner(1),
+        0b1011 => single_corner(2),
+        0b0111 => single_corner(3),
         0b0011 => Some((0b0011, [(0, 1), (1, 1)])),
         0b0101 => Some((0b0101, [(0, 0), (2, 0)])),
         _ => None,
@@ -256,7 +262,7 @@ fn sides_of(like_first: u8) -> Option<(u8, [(usize, usize); 2])> {
 fn tolerance<R: Real>(cell: &Cell, contrast: R, limits: Limits<R>) -> u16 {
     let least = limits.least_side() / 2;
     let mut tolerance = cell.side / 4;
-    let error = |steps: u16| contrast * R::from_f64(f64::from(steps) / FINEST as f64);
+    let error = |steps: u16| contrast * R::from_f64(f64::from(steps) / PIXEL_STEPS as f64);
     while tolerance > least && R::from_f64(EDGE_ERROR / 2.0) < error(tolerance) {
         tolerance /= 2;
     }
@@ -280,7 +286,7 @@ mod tests {
     /// Traces the samples of a pixel: white where `is_white`, black elsewhere.
     fn see(samples: &Samples<f64>, is_white: impl Fn(f64, f64) -> bool) -> Traced<f64> {
         let mut traced = Traced::default();
-        traced.resize(samples.count, samples.count, EdgeDetail::Signed);
+        traced.resize(samples.count, samples.count, EdgeDetail::Signatures);
         for index in 0..samples.count {
             let is_white = is_white(samples.x[index], samples.y[index]);
             let value = f64::from(u8::from(is_white));
@@ -288,7 +294,7 @@ mod tests {
                 channel[index] = value;
             }
             traced.signature[index] = u32::from(is_white) + 5;
-            traced.near[index] = f64::INFINITY;
+            traced.thin_distance[index] = f64::INFINITY;
         }
         traced
     }
@@ -311,12 +317,12 @@ mod tests {
         let mut crossed = CrossedCell::of(&pixel[0], &lattice, limits)?;
         let mut taken = 0;
         loop {
-            crossed.want(&mut lattice);
-            lattice.wanted_samples(&PIXEL, &mut samples);
+            crossed.request_samples(&mut lattice);
+            lattice.requested_samples(&PIXEL, &mut samples);
             samples.pad(1);
             taken += samples.count;
             lattice.take_results(&see(&samples, &is_white));
-            match crossed.take(&lattice, &mut colors) {
+            match crossed.evaluate(&lattice, &mut colors) {
                 CellFinding::Nothing => {}
                 CellFinding::NotOneEdge(_) => return None,
                 CellFinding::Color => return Some((colors.channels[0][0], taken)),

@@ -9,7 +9,7 @@ use crate::simd::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct EdgeSide<R> {
     /// The sample at a corner on that side.
-    pub seen: CornerSample<R>,
+    pub sample: CornerSample<R>,
     /// Greatest difference between its colour and others on that side, summed over the channels.
     pub limit: R,
 }
@@ -17,8 +17,8 @@ pub struct EdgeSide<R> {
 impl<R: Real> EdgeSide<R> {
     /// Returns whether a sample sees the same.
     #[inline(always)]
-    pub fn is_in(&self, sample: &CornerSample<R>) -> bool {
-        sample.signature == self.seen.signature && contrast(sample, &self.seen) <= self.limit
+    pub fn matches(&self, sample: &CornerSample<R>) -> bool {
+        sample.signature == self.sample.signature && contrast(sample, &self.sample) <= self.limit
     }
 }
 
@@ -33,7 +33,7 @@ pub fn contrast<R: Real>(a: &CornerSample<R>, b: &CornerSample<R>) -> R {
 }
 
 /// A point in a cell, in steps of the finest grid.
-pub type Place = [f64; 2];
+pub type CellPosition = [f64; 2];
 
 /// The point where an edge crosses a side of a cell.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ pub struct Crossing {
     /// The search ends once `high - low` is no more than this.
     tolerance: u16,
     /// Indices of the samples at `low` and `high`.
-    pub seen: [u32; 2],
+    pub samples: [u32; 2],
     /// Indices of the samples requested between them.
     inside: [u32; 3],
 }
@@ -59,15 +59,15 @@ pub struct Crossing {
 impl Crossing {
     /// Creates a search over the whole side of the cell that runs from `corner` along `axis`.
     pub fn new(cell: &Cell, (corner, axis): (usize, usize), tolerance: u16) -> Self {
-        let place = |from: u16, axis: usize| from + (corner >> axis & 1) as u16 * cell.side;
+        let coordinate = |from: u16, axis: usize| from + (corner >> axis & 1) as u16 * cell.side;
         Self {
-            corner: [place(cell.x, 0), place(cell.y, 1)],
+            corner: [coordinate(cell.x, 0), coordinate(cell.y, 1)],
             axis,
             is_back: corner >> axis & 1 == 1,
             low: 0,
             high: cell.side,
             tolerance,
-            seen: [cell.corners[corner], cell.corners[corner ^ (1 << axis)]],
+            samples: [cell.corners[corner], cell.corners[corner ^ (1 << axis)]],
             inside: [0; 3],
         }
     }
@@ -86,11 +86,11 @@ impl Crossing {
     /// Returns the grid point at this number of steps from the corner.
     fn point(&self, steps: u16) -> [u16; 2] {
         let mut point = self.corner;
-        let place = &mut point[self.axis];
-        *place = if self.is_back {
-            *place - steps
+        let coordinate = &mut point[self.axis];
+        *coordinate = if self.is_back {
+            *coordinate - steps
         } else {
-            *place + steps
+            *coordinate + steps
         };
         point
     }
@@ -111,18 +111,18 @@ impl Crossing {
     }
 
     /// Requests samples between those that are known.
-    pub fn want<R: Real>(&mut self, lattice: &mut Lattice<R>) {
+    pub fn request_samples<R: Real>(&mut self, lattice: &mut Lattice<R>) {
         if self.is_found() {
             return;
         }
         let (step, mut at) = (self.step(), self.low);
-        for inside in 0..self.inside.len() {
+        for index in 0..self.inside.len() {
             at += step;
             if at >= self.high {
                 break;
             }
             let [x, y] = self.point(at);
-            self.inside[inside] = lattice.want(x, y);
+            self.inside[index] = lattice.request(x, y);
         }
     }
 
@@ -143,14 +143,14 @@ impl Crossing {
             if at >= end {
                 break;
             }
-            let seen = lattice.sample(index);
-            if second.is_in(seen) {
+            let sample = lattice.sample(index);
+            if second.matches(sample) {
                 if !is_beyond {
-                    (self.high, self.seen[1]) = (at, index);
+                    (self.high, self.samples[1]) = (at, index);
                 }
                 is_beyond = true;
-            } else if first.is_in(seen) && !is_beyond {
-                (self.low, self.seen[0]) = (at, index);
+            } else if first.matches(sample) && !is_beyond {
+                (self.low, self.samples[0]) = (at, index);
             } else {
                 return false;
             }
@@ -164,13 +164,13 @@ impl Crossing {
     }
 
     /// The crossing, on the finest grid.
-    pub fn place(&self) -> Place {
-        let mut place = self.corner.map(f64::from);
-        place[self.axis] += if self.is_back {
+    pub fn position(&self) -> CellPosition {
+        let mut position = self.corner.map(f64::from);
+        position[self.axis] += if self.is_back {
             -self.distance()
         } else {
             self.distance()
         };
-        place
+        position
     }
 }

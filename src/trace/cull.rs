@@ -8,9 +8,9 @@ use super::bundle::Shaft;
 use super::candidates::{Candidates, Omit};
 use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
-use super::thin_cull::may_slip;
+use super::thin_cull::may_pass_thin;
 use super::thin_margin::ThinMargin;
-use super::thresholds::SLIPPING;
+use super::thresholds::THIN_WIDTH;
 use super::tile::Tile;
 use super::walk::Stack;
 use crate::plan::{Plan, PointLight, RayOrigin};
@@ -50,12 +50,12 @@ pub struct LightCandidates {
 impl Candidates {
     /// Becomes the candidates of `from` that may slip between samples if pixels are `footprint` wide; empty without
     /// a footprint.
-    fn keep_slipping<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
+    fn keep_thin<R: Real>(&mut self, from: &Self, plan: &Plan<R>, footprint: Option<R>) {
         match footprint {
             None => self.clear(),
             Some(width) => {
-                let slipping = width * R::from_f64(SLIPPING);
-                self.keep_narrow(from, plan, |_, _| slipping);
+                let thin_width = width * R::from_f64(THIN_WIDTH);
+                self.keep_narrow(from, plan, |_, _| thin_width);
             }
         }
     }
@@ -70,14 +70,14 @@ impl Candidates {
         let (top, bottom) = (edge(tile.rows.start), edge(tile.rows.end));
         let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
         let corners = corners.map(|(x, y)| plan.view.rays(x, y));
-        let little = R::from_f64(1e-5);
+        let tolerance = R::from_f64(1e-5);
         self.planes_mut().retain(|&index| {
             let plane = &plan.primitives.planes[index as usize];
             corners.iter().any(|(origin, direction)| {
                 let height = plane.offset - plane.normal.dot(*origin);
                 let speed = plane.normal.dot(*direction);
-                let is_near = height.abs() <= little * (origin.max_abs() + plane.offset.abs());
-                is_near || speed.abs() <= little || (height > R::ZERO) == (speed > R::ZERO)
+                let is_near = height.abs() <= tolerance * (origin.max_abs() + plane.offset.abs());
+                is_near || speed.abs() <= tolerance || (height > R::ZERO) == (speed > R::ZERO)
             })
         });
     }
@@ -87,7 +87,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// `candidates` becomes what rays of the beam can meet, markers included, except a plane on which all of them
     /// start.
     #[inline(always)]
-    pub fn keep_met(
+    pub fn gather_met(
         self,
         candidates: &mut Candidates,
         beam: &Beam<L::Real>,
@@ -105,12 +105,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
     }
 
-    /// `between` becomes what can block a light for any point of a ball or within `footprint` of it; without a
+    /// `candidates` becomes what can block a light for any point of a ball or within `footprint` of it; without a
     /// footprint, nothing thin is listed.
     #[inline(always)]
-    pub fn keep_between(
+    pub fn gather_casters(
         self,
-        between: &mut LightCandidates,
+        candidates: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (ball, footprint): (&Ball, Option<L::Real>),
         scratch: &mut Scratch<L::Real>,
@@ -121,14 +121,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             entry_points,
             thin,
             is_umbra,
-        } = between;
+        } = candidates;
         entry_points.reset();
         let from = light.position.to_dvec3();
-        let beside = footprint.unwrap_or(L::Real::ZERO);
+        let margin = footprint.unwrap_or(L::Real::ZERO);
         let beam = Beam::to_ball(from, ball);
-        let Some(beam) = beam.and_then(|beam| beam.widened(beside, L::Real::ZERO)) else {
+        let Some(beam) = beam.and_then(|beam| beam.widened(margin, L::Real::ZERO)) else {
             *casters = Candidates::all_casting(plan, light);
-            thin.keep_slipping(casters, plan, footprint);
+            thin.keep_thin(casters, plan, footprint);
             *is_umbra = false;
             return;
         };
@@ -142,8 +142,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             casters.planes_mut().extend(planes);
         }
         casters.leave_out(plan, &light.holders);
-        thin.keep_slipping(casters, plan, footprint);
-        let mut umbra = Umbra {
+        thin.keep_thin(casters, plan, footprint);
+        let mut umbra = UmbraSearch {
             casters,
             light: from,
             ball,
@@ -159,9 +159,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// between samples there if pixels are as wide as `footprint`. Does nothing unless the plan starts rays at the
     /// hits, since otherwise they may start anywhere.
     #[inline(always)]
-    pub fn enter_towards(
+    pub fn find_shadow_entry_points(
         self,
-        between: &mut LightCandidates,
+        candidates: &mut LightCandidates,
         light: &PointLight<L::Real>,
         (hits, footprint): (&BoundingBox<L::Real>, Option<L::Real>),
     ) {
@@ -170,7 +170,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             return;
         };
         let is_at_hits = matches!(plan.ray_origin, RayOrigin::AtHit);
-        if !between.casters.has_geometry || !plan.is_boxed || !is_at_hits {
+        if !candidates.casters.has_geometry || !plan.is_boxed || !is_at_hits {
             return;
         }
         let caution = L::Real::from_f64(FAR_CAUTION);
@@ -179,39 +179,40 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let shaft = if let Some(apex) = light.apex(geometry) {
             let slack = (hits.max_abs() + reach.max(apex.max_abs())) * caution;
             let ends = hits.widened(slack);
-            let ways = BoundingBox {
+            let directions = BoundingBox {
                 low: ends.low - apex,
                 high: ends.high - apex,
             };
-            Shaft::of(&BoundingBox::around(&[apex]).widened(slack), &ways)
+            Shaft::of(&BoundingBox::around(&[apex]).widened(slack), &directions)
         } else {
             let starts = hits.widened((hits.max_abs() + reach) * caution);
-            let ways = BoundingBox {
+            let directions = BoundingBox {
                 low: light.position - starts.high,
                 high: light.position - starts.low,
             };
-            Shaft::of(&starts, &ways)
+            Shaft::of(&starts, &directions)
         };
         let end = L::Real::ONE + caution;
-        between.casters.has_geometry = between
+        candidates.casters.has_geometry = candidates
             .entry_points
             .narrow::<L>(self.token, geometry, &shaft, end);
-        if let Some(width) = footprint.filter(|_| between.thin.has_geometry) {
-            let beside = ThinMargin::slipping(width, L::Real::ZERO);
-            between.thin.has_geometry = may_slip::<L>(self.token, geometry, &shaft, &beside);
+        if let Some(width) = footprint.filter(|_| candidates.thin.has_geometry) {
+            let margin = ThinMargin::new(width, L::Real::ZERO);
+            candidates.thin.has_geometry =
+                may_pass_thin::<L>(self.token, geometry, &shaft, &margin);
         }
     }
 }
 
 /// Looks for a caster that alone hides a ball from a light.
-struct Umbra<'a> {
+struct UmbraSearch<'a> {
     casters: &'a Candidates,
     light: DVec3,
     ball: &'a Ball,
     is_found: bool,
 }
 
-impl<R: Real> Visit<R> for Umbra<'_> {
+impl<R: Real> Visit<R> for UmbraSearch<'_> {
     fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
         let mut casters = self.casters.of(kind).iter();
         self.is_found = self.is_found

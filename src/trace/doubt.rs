@@ -20,53 +20,53 @@ pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
 /// What is undecided about the hits of rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubt<L: SimdFloat, const TREE: bool> {
-    is_asked: bool,
+    is_enabled: bool,
     /// Lateral error of the rays.
     pub blur: Blur<L>,
     /// Error of a hit along the rays.
     along: Blur<L>,
     /// Distance from which on the rays may hit something else.
-    pub from: L,
+    pub undecided_from: L,
     /// Distance of the second-nearest hit.
-    pub second: L,
+    pub second_nearest: L,
 }
 
 impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
-    /// Starts with nothing in doubt, which stays so unless `is_asked`. Without `tells_nearer`, it is never in doubt
+    /// Starts with nothing in doubt, which stays so unless `is_enabled`. Without `doubts_nearer`, it is never in doubt
     /// which of two hits is nearer.
     #[inline(always)]
-    pub fn new(blur: Blur<L>, (is_asked, tells_nearer): (bool, bool)) -> Self {
+    pub fn new(blur: Blur<L>, (is_enabled, doubts_nearer): (bool, bool)) -> Self {
         Self {
-            is_asked,
+            is_enabled,
             blur,
-            along: blur.times(if tells_nearer { GRAZING_FACTOR } else { 0.0 }),
-            from: blur.start.like(L::Real::INFINITY),
-            second: blur.start.like(L::Real::INFINITY),
+            along: blur.times(if doubts_nearer { GRAZING_FACTOR } else { 0.0 }),
+            undecided_from: blur.start.like(L::Real::INFINITY),
+            second_nearest: blur.start.like(L::Real::INFINITY),
         }
     }
 
     /// Returns whether doubtful hits are detected.
     #[inline(always)]
-    pub fn is_asked(&self) -> bool {
-        is_filtered::<L, TREE>() && self.is_asked
+    pub fn is_enabled(&self) -> bool {
+        is_filtered::<L, TREE>() && self.is_enabled
     }
 
     /// Returns a distance, increased by as much as rounding may have reduced it.
     #[inline(always)]
-    pub fn after(&self, t: L) -> L {
-        if self.is_asked() {
+    pub fn upper_bound(&self, t: L) -> L {
+        if self.is_enabled() {
             L::select(t.less(t.like(L::Real::INFINITY)), t + self.along.at(t), t)
         } else {
             t
         }
     }
 
-    /// The factor by which [`Self::after`] increases a distance.
+    /// The factor by which [`Self::upper_bound`] increases a distance.
     #[inline(always)]
     pub fn stretch(&self, t: L) -> L {
         let one = t.like(L::Real::ONE);
-        if self.is_asked() {
-            L::select(t.like(L::Real::ZERO).less(t), self.after(t) / t, one)
+        if self.is_enabled() {
+            L::select(t.like(L::Real::ZERO).less(t), self.upper_bound(t) / t, one)
         } else {
             one
         }
@@ -74,16 +74,16 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
 
     /// Returns a distance, reduced by its error.
     #[inline(always)]
-    pub fn ahead_of(&self, t: L) -> L {
+    pub fn lower_bound(&self, t: L) -> L {
         t - self.along.at(t)
     }
 
     /// Returns where the nearest and the second hit may swap places: also where they are at equal distances, as
     /// surfaces a hair apart are if seen from afar.
     #[inline(always)]
-    pub fn is_tie(&self, nearest: L, second: L) -> L::Mask {
+    pub fn is_tie(&self, nearest: L, second_nearest: L) -> L::Mask {
         // If both are infinite, the difference is NaN, which is not less.
-        (second - nearest).less(self.along.at(nearest))
+        (second_nearest - nearest).less(self.along.at(nearest))
     }
 
     /// Returns the distance of a primitive, and the distance from which on it is undecided whether it is hit;
@@ -106,36 +106,36 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         }
         let blur = (&self.blur, wanted);
         let found = primitive.intersect_in_doubt(&paths.rays, prepared, methods, blur);
-        let own = paths.ignored.is(number);
-        if !own.any() || (found.is_none() && !P::IS_CURVED) {
+        let starts_here = paths.ignored.starts_on(number);
+        if !starts_here.any() || (found.is_none() && !P::IS_CURVED) {
             return found;
         }
         let (t, from) = found.unwrap_or((infinity, infinity));
-        let t = L::select(own, primitive.exit(&paths.rays), t);
-        Some((t, L::select(own, infinity, from)))
+        let t = L::select(starts_here, primitive.exit(&paths.rays), t);
+        Some((t, L::select(starts_here, infinity, from)))
     }
 
     /// Returns where the rays may hit something else up to a distance.
     #[inline(always)]
-    pub fn before(&self, t: L) -> L::Mask {
+    pub fn may_hit_before(&self, t: L) -> L::Mask {
         let infinity = t.like(L::Real::INFINITY);
-        self.from.less(infinity) & self.from.at_most(self.after(t))
+        self.undecided_from.less(infinity) & self.undecided_from.at_most(self.upper_bound(t))
     }
 }
 
 /// Smallest cosine between rays and a surface's normal at which hits are judged: if it were smaller, more would have
 /// to be searched around hits; if it were larger, more would be traced again.
-const LEAST_COSINE: f64 = 4e-3;
+const MIN_COSINE: f64 = 4e-3;
 /// Least error per unit of distance at which mirrored rays are not judged.
-const WIDEST: f64 = 1e-3;
+const MAX_SPREAD: f64 = 1e-3;
 /// Rays that contribute no more than this are not doubted, nor is what they see in mirrors: less than an 8-bit
 /// level.
-const FAINTEST: f64 = 1.0 / 400.0;
+const MIN_WEIGHT: f64 = 1.0 / 400.0;
 
 /// Upper bound of the error along the surface of hits that are judged, if the rays are off by no more than `off`
 /// and no coordinate exceeds `size`.
-pub fn farthest_off<R: Real>(off: R, size: R) -> R {
-    (off + Blur::of_size(size).start) * R::from_f64(1.0 / LEAST_COSINE)
+pub fn max_hit_error<R: Real>(off: R, size: R) -> R {
+    (off + Blur::of_size(size).start) * R::from_f64(1.0 / MIN_COSINE)
 }
 
 /// How exact the rays of a packet are.
@@ -200,7 +200,7 @@ pub fn widest_blur<L: SimdFloat>(
 /// Error of the hits of rays along a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct HitError<L: SimdFloat> {
-    off: L,
+    offset: L,
     /// Where the error is so large that nothing can be said about rays that go on from there: it exceeds even the
     /// distance that is searched around them.
     pub is_lost: L::Mask,
@@ -209,7 +209,7 @@ pub struct HitError<L: SimdFloat> {
     /// Curvature of the surface.
     curvature: L,
     /// Blur of rays that start at coordinates as large as the surface's.
-    own: Blur<L>,
+    start_blur: Blur<L>,
 }
 
 impl<L: SimdFloat> HitError<L> {
@@ -217,14 +217,14 @@ impl<L: SimdFloat> HitError<L> {
     #[inline(always)]
     pub fn new(rays: &Uncertainty<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
         let blur = &rays.blur;
-        let own = Blur::of_sizes(surface.size + rays.farthest_middle);
+        let start_blur = Blur::of_sizes(surface.size + rays.farthest_middle);
         let cosine = cosine.abs();
         Self {
-            off: (blur.at(t) + own.start) / cosine,
-            is_lost: cosine.less(cosine.like_f64(LEAST_COSINE)),
+            offset: (blur.at(t) + start_blur.start) / cosine,
+            is_lost: cosine.less(cosine.like_f64(MIN_COSINE)),
             spread: blur.spread,
             curvature: surface.curvature,
-            own,
+            start_blur,
         }
     }
 
@@ -235,35 +235,36 @@ impl<L: SimdFloat> HitError<L> {
         let Some(shiny) = shiny else {
             return cosine.less(cosine);
         };
-        let turn = self.off * (self.curvature + per_length);
-        let rounded = self.own.spread + per_length * self.own.start;
+        let turn = self.offset * (self.curvature + per_length);
+        let rounded = self.start_blur.spread + per_length * self.start_blur.start;
         shiny & cosine.abs().at_most(turn + rounded)
     }
 
     /// Returns the blur of rays that go on to a light, as far as anything is known about it; given the light's
     /// distance and one over that.
     #[inline(always)]
-    pub fn onwards(&self, distance: (L, L)) -> Blur<L> {
-        let off = L::select(self.is_lost, self.own.start, self.off);
-        self.own.towards(off, distance)
+    pub fn blur_to_light(&self, distance: (L, L)) -> Blur<L> {
+        let offset = L::select(self.is_lost, self.start_blur.start, self.offset);
+        self.start_blur.towards(offset, distance)
     }
 
     /// Notes blur and weight of the rays that a mirror sends on, where `active`; `share` is the share that it
     /// reflects. Where their error is too large to judge them, the whole ray is in doubt.
     #[inline(always)]
-    pub fn mirror(&self, (active, share): (L::Mask, L), own: &mut Uncertainty<L>) {
-        let off = self.off;
-        let weight = own.weight * share;
-        let turn = off * self.curvature;
-        let blur = self.own.onwards(off, self.spread + turn + turn);
-        let is_told = blur.spread.less(off.like_f64(WIDEST)) & !self.is_lost;
-        let counts = off.like_f64(FAINTEST).less(weight) & active;
-        let none = Blur::splat(off.token(), Blur::NONE);
-        let (other_blur, other_weight) = own.mirrored;
-        own.mirrored = (
-            blur.over(is_told & counts, &none).over(active, &other_blur),
+    pub fn note_reflection(&self, (active, share): (L::Mask, L), uncertainty: &mut Uncertainty<L>) {
+        let offset = self.offset;
+        let weight = uncertainty.weight * share;
+        let turn = offset * self.curvature;
+        let blur = self.start_blur.onwards(offset, self.spread + turn + turn);
+        let is_judged = blur.spread.less(offset.like_f64(MAX_SPREAD)) & !self.is_lost;
+        let counts = offset.like_f64(MIN_WEIGHT).less(weight) & active;
+        let none = Blur::splat(offset.token(), Blur::NONE);
+        let (other_blur, other_weight) = uncertainty.mirrored;
+        uncertainty.mirrored = (
+            blur.over(is_judged & counts, &none)
+                .over(active, &other_blur),
             L::select(active, weight, other_weight),
         );
-        own.doubt = own.doubt | counts & !is_told;
+        uncertainty.doubt = uncertainty.doubt | counts & !is_judged;
     }
 }

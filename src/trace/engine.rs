@@ -20,14 +20,14 @@ pub struct Workspace<L: SimdFloat> {
     scratch: Scratch<L::Real>,
     /// Results of rays that were traced in another order than the samples.
     unsorted: Traced<L::Real>,
-    again: Repeated,
+    retraced: RetracedSamples,
 }
 
 /// Samples that are retraced.
 #[derive(Default)]
-struct Repeated {
+struct RetracedSamples {
     /// Their indices.
-    places: Vec<u32>,
+    indices: Vec<u32>,
     samples: Samples<f64>,
     traced: Traced<f64>,
 }
@@ -50,7 +50,7 @@ impl<L: SimdFloat> Default for Workspace<L> {
             bounces: Vec::new(),
             scratch: Scratch::default(),
             unsorted: Traced::default(),
-            again: Repeated::default(),
+            retraced: RetracedSamples::default(),
         }
     }
 }
@@ -61,24 +61,24 @@ pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     work: &'a mut Workspace<L>,
     /// Set once the picture is no longer wanted; also checked within a tile, whose rays can take minutes.
     stop: &'a AtomicBool,
-    reference: Option<&'a dyn Retracer>,
+    retracer: Option<&'a dyn Retracer>,
     /// Number of rays traced so far.
     pub rays: Rays,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
-    /// Creates an engine for a plan. It does nothing more once `stop` is set; `reference`, if given, retraces
+    /// Creates an engine for a plan. It does nothing more once `stop` is set; `retracer`, if given, retraces
     /// doubtful samples.
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
-        (stop, reference): (&'a AtomicBool, Option<&'a dyn Retracer>),
+        (stop, retracer): (&'a AtomicBool, Option<&'a dyn Retracer>),
     ) -> Self {
         Self {
             kernel,
             work,
             stop,
-            reference,
+            retracer,
             rays: Rays::default(),
         }
     }
@@ -93,12 +93,12 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Traces the samples, whose rays can meet what is in `seen`. Once the engine is stopped, the results are
+    /// Traces the samples, whose rays can meet what is in `candidates`. Once the engine is stopped, the results are
     /// arbitrary.
     pub fn trace(
         &mut self,
         samples: &Samples<L::Real>,
-        seen: &Candidates,
+        candidates: &Candidates,
         edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
@@ -106,54 +106,61 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         L::vectorize(
             self.kernel.token,
             #[inline(always)]
-            || self.trace_vectorized(samples, seen, edges, traced),
+            || self.trace_vectorized(samples, candidates, edges, traced),
         );
-        let is_anything_seen = !seen.is_empty() && !self.is_stopped();
+        let is_anything_seen = !candidates.is_empty() && !self.is_stopped();
         // There are no faces in most scenes, and few in others: noted outside of the kernel, which is faster
         // without.
         traced.faces.clear();
-        if edges >= EdgeDetail::Bordered && is_anything_seen {
+        if edges >= EdgeDetail::Borders && is_anything_seen {
             let bounce = &self.work.bounces[0];
             let packets = (&bounce.packets[..], &bounce.order.samples[..]);
             note_faces(self.kernel.plan, packets, traced);
         }
-        if let Some(reference) = self.reference.filter(|_| is_anything_seen) {
-            self.repeat(reference, samples, edges, traced);
+        if let Some(retracer) = self.retracer.filter(|_| is_anything_seen) {
+            self.retrace(retracer, samples, edges, traced);
         }
         if self.kernel.plan.show == Show::Again {
-            let places = &self.work.again.places;
-            traced.mark(if is_anything_seen { places } else { &[] });
+            let indices = &self.work.retraced.indices;
+            traced.mark(if is_anything_seen { indices } else { &[] });
         }
     }
 
     /// Retraces the samples that are in doubt.
-    fn repeat(
+    fn retrace(
         &mut self,
-        reference: &dyn Retracer,
+        retracer: &dyn Retracer,
         samples: &Samples<L::Real>,
         edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
-        let Workspace { bounces, again, .. } = &mut *self.work;
-        bounces[0].list_doubtful(samples.count, &mut again.places);
-        if again.places.is_empty() {
+        let Workspace {
+            bounces, retraced, ..
+        } = &mut *self.work;
+        bounces[0].list_doubtful(samples.count, &mut retraced.indices);
+        if retraced.indices.is_empty() {
             return;
         }
-        again.samples.clear();
-        for &index in &again.places {
+        retraced.samples.clear();
+        for &index in &retraced.indices {
             let (x, y) = (samples.x[index as usize], samples.y[index as usize]);
-            again.samples.push(x.to_f64(), y.to_f64());
+            retraced.samples.push(x.to_f64(), y.to_f64());
         }
-        reference.trace(&mut again.samples, edges, self.stop, &mut again.traced);
-        traced.replace(&again.places, &again.traced, edges);
-        self.rays.again += again.places.len() as u64;
+        retracer.trace(
+            &mut retraced.samples,
+            edges,
+            self.stop,
+            &mut retraced.traced,
+        );
+        traced.replace(&retraced.indices, &retraced.traced, edges);
+        self.rays.again += retraced.indices.len() as u64;
     }
 
     #[inline(always)]
     fn trace_vectorized(
         &mut self,
         samples: &Samples<L::Real>,
-        seen: &Candidates,
+        candidates: &Candidates,
         edges: EdgeDetail,
         traced: &mut Traced<L::Real>,
     ) {
@@ -163,7 +170,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             return traced.fill(count, length, edges, Vec3::default());
         }
         self.rays.camera += count as u64;
-        if seen.is_empty() {
+        if candidates.is_empty() {
             let sky = match kernel.plan.show {
                 Show::Mirrors => Vec3::default(),
                 _ => clamped(kernel.plan.background),
@@ -173,7 +180,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         let with_edges = edges != EdgeDetail::Ignored;
         traced.resize(count, length, edges);
         self.grow(0);
-        self.work.bounces[0].start(kernel, samples, seen, edges);
+        self.work.bounces[0].start(kernel, samples, candidates, edges);
 
         // Forward: each bounce spawns the rays of the next one.
         let mut depth = 0;
@@ -184,9 +191,9 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             next.clear();
             next.edge_detail = bounce.edge_detail;
             let may_mirror = (depth as u32) < kernel.plan.reflection_limit;
-            if bounce.find(kernel, &mut self.work.scratch) {
+            if bounce.find_hits(kernel, &mut self.work.scratch) {
                 if depth == 0 {
-                    bounce.arrange(kernel, samples);
+                    bounce.regroup_hits(kernel, samples);
                 }
                 let counted = (&mut self.work.scratch.stack, &mut self.rays);
                 bounce.shade(kernel, may_mirror, next, counted);
@@ -194,12 +201,12 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             if next.is_empty() || self.stop.load(Ordering::Relaxed) {
                 break;
             }
-            next.aim(kernel, &mut self.work.scratch);
+            next.find_candidates(kernel, &mut self.work.scratch);
             depth += 1;
         }
         if with_edges {
             for bounce in &mut self.work.bounces[..=depth] {
-                bounce.sign(kernel.plan);
+                bounce.compute_signatures(kernel.plan);
             }
         }
 

@@ -6,7 +6,7 @@ use crate::plan::{Bvh, Child, GROUP, Geometry, Node};
 use crate::simd::{Real as _, SimdFloat};
 
 /// Greatest number of meshes with entry points of their own per tile; others are entered at their roots.
-const MESHES: usize = 4;
+const MAX_MESHES: usize = 4;
 
 /// The nodes at which a tile's rays enter the trees. They need not be nodes of a tree: their boxes may come from
 /// several nodes, and together contain everything that the rays can meet.
@@ -48,18 +48,18 @@ impl EntryPoints {
         reach: L::Real,
     ) -> bool {
         self.meshes.clear();
-        let Some(mut objects) = start::<L>(token, &geometry.bvh, shaft, reach) else {
+        let Some(mut objects) = entry_node::<L>(token, &geometry.bvh, shaft, reach) else {
             return false;
         };
         let mut kept = Node::empty();
         for index in 0..objects.count {
             if let Child::Member(member) = objects.child(index)
                 && let Some(mesh) = (member as usize).checked_sub(geometry.primitives.len())
-                && self.meshes.len() < MESHES
+                && self.meshes.len() < MAX_MESHES
             {
                 let instance = &geometry.meshes[mesh];
-                let own = shaft.seen_from(instance.centre);
-                match start::<L>(token, &instance.mesh.bvh, &own, reach) {
+                let local_shaft = shaft.seen_from(instance.centre);
+                match entry_node::<L>(token, &instance.mesh.bvh, &local_shaft, reach) {
                     Some(node) => self.meshes.push((mesh as u32, node)),
                     None => continue,
                 }
@@ -80,11 +80,11 @@ impl EntryPoints {
     /// The entry point into the tree of a mesh.
     #[inline(always)]
     pub fn of_mesh<'a, R>(&'a self, geometry: &'a Geometry<R>, mesh: usize) -> Option<&'a Node> {
-        let own = self
+        let narrowed = self
             .meshes
             .iter()
             .find(|(index, _)| *index as usize == mesh);
-        match own {
+        match narrowed {
             Some((_, node)) => Some(node),
             None => geometry.meshes[mesh].mesh.bvh.nodes.first(),
         }
@@ -94,7 +94,7 @@ impl EntryPoints {
 /// Returns the boxes that the rays can meet, descended as far as all of them fit in one node; `None` if there are
 /// none.
 #[inline(always)]
-fn start<L: SimdFloat>(
+fn entry_node<L: SimdFloat>(
     token: L::Token,
     bvh: &Bvh<L::Real>,
     shaft: &Shaft<L::Real>,

@@ -4,19 +4,19 @@
 
 use super::gather::HitPrimitive;
 use super::packet::Packet;
-use super::paths::NOTHING;
+use super::paths::NO_PRIMITIVE;
 use super::samples::Traced;
 use crate::plan::{Geometry, Plan};
 use crate::primitive::{Kind, PackedTriangle};
 use crate::simd::{MAX_LANES, Real, SimdFloat, Vec3};
 
 /// Bits of a mark for each corner of the face.
-const BITS: u32 = 10;
-const CORNER: u64 = (1 << BITS) - 1;
+const CORNER_BITS: u32 = 10;
+const CORNER_MASK: u64 = (1 << CORNER_BITS) - 1;
 /// Sine of the angle between a face and the direction to a light below which its light is not visible on the face.
-const GRAZING: f64 = 1e-3;
+const GRAZING_SINE: f64 = 1e-3;
 /// Number of lights that a mark covers.
-const LIGHTS: usize = 32;
+const MAX_LIGHTS: usize = 32;
 
 /// Notes the marks of the flat faces that packets have hit, of meshes or of connected triangles: 0 for everything
 /// else, and nothing in scenes without such faces. `order` maps rays to samples if they were reordered. Faces of
@@ -32,21 +32,21 @@ pub fn note_faces<L: SimdFloat>(
     traced.faces.resize(traced.red.len(), 0);
     let mut numbers = [L::Real::ZERO; MAX_LANES];
     // Adjacent rays are often on the same face.
-    let (mut last, mut mark) = (NOTHING, 0);
+    let (mut last, mut mark) = (NO_PRIMITIVE, 0);
     for (index, packet) in packets.iter().enumerate() {
-        packet.near.number.store(&mut numbers);
+        packet.nearest.number.store(&mut numbers);
         for (lane, number) in numbers[..L::WIDTH].iter().enumerate() {
             let number = number.to_f64();
             if number != last {
                 last = number;
-                let face = (number != NOTHING).then(|| face_of(plan, number as usize));
+                let face = (number != NO_PRIMITIVE).then(|| face_of(plan, number as usize));
                 mark = face.flatten().map_or(0, |face| {
                     let unlit_lights = lights_behind(plan, face, packet.rays.direction.lane(lane));
                     u64::from(unlit_lights) << (u64::BITS - u32::BITS) | mark_of(face.0.corners)
                 });
             }
-            let place = index * L::WIDTH + lane;
-            let sample = order.get(place).map_or(place, |&sample| sample as usize);
+            let ray = index * L::WIDTH + lane;
+            let sample = order.get(ray).map_or(ray, |&sample| sample as usize);
             traced.faces[sample] = mark;
         }
     }
@@ -78,18 +78,18 @@ fn face_of<R: Real>(plan: &Plan<R>, number: usize) -> Option<Face<'_, R>> {
     }
 }
 
-/// Returns which of the first [`LIGHTS`] lights are behind a face that is seen in this direction, or so low above
+/// Returns which of the first [`MAX_LIGHTS`] lights are behind a face that is seen in this direction, or so low above
 /// it that their light is not visible. The result is the same in any precision, even if a light is in the plane of
 /// the face.
 fn lights_behind<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Vec3<R>) -> u32 {
-    let place = face.corners[0] + origin;
+    let corner = face.corners[0] + origin;
     let is_front = direction.dot(face.normal) < R::ZERO;
-    let lights = plan.lights.iter().take(LIGHTS).enumerate();
+    let lights = plan.lights.iter().take(MAX_LIGHTS).enumerate();
     lights.fold(0, |unlit_lights, (number, light)| {
-        let way = light.position - place;
-        let height = way.dot(face.normal);
+        let to_light = light.position - corner;
+        let height = to_light.dot(face.normal);
         let height = if is_front { height } else { -height };
-        let is_lit = way.length() * R::from_f64(GRAZING) < height;
+        let is_lit = to_light.length() * R::from_f64(GRAZING_SINE) < height;
         unlit_lights | u32::from(!is_lit) << number
     })
 }
@@ -97,7 +97,7 @@ fn lights_behind<R: Real>(plan: &Plan<R>, (face, origin): Face<R>, direction: Ve
 /// Combines a few bits of each corner, never 0: they identify the face, and show which faces are its neighbours.
 fn mark_of<R: Real>(corners: [Vec3<R>; 3]) -> u64 {
     let [a, b, c] = corners.map(bits_of).map(u64::from);
-    a << (2 * BITS) | b << BITS | c
+    a << (2 * CORNER_BITS) | b << CORNER_BITS | c
 }
 
 /// Hashes a corner to a few bits, not 0, which are the same in single and in double precision.
@@ -105,17 +105,17 @@ fn bits_of<R: Real>(corner: Vec3<R>) -> u32 {
     let mut bits = 0_u32;
     for number in [corner.x, corner.y, corner.z] {
         // Maps -0 to +0.
-        let own = (number.to_f64() as f32 + 0.0).to_bits();
-        bits = (bits.rotate_left(5) ^ own).wrapping_mul(0x9E37_79B1);
+        let float_bits = (number.to_f64() as f32 + 0.0).to_bits();
+        bits = (bits.rotate_left(5) ^ float_bits).wrapping_mul(0x9E37_79B1);
     }
-    (bits >> (32 - BITS)).max(1)
+    (bits >> (32 - CORNER_BITS)).max(1)
 }
 
 /// Returns whether a face, or light, may be hidden between the samples at a cell's corners: upper left and right,
 /// lower left and right.
 #[inline(always)]
 pub fn may_hide_face(corners: [u64; 4]) -> bool {
-    any_beside(corners, |one, other| {
+    any_adjacent(corners, |one, other| {
         one != other && !are_neighbours(one, other)
     })
 }
@@ -123,22 +123,26 @@ pub fn may_hide_face(corners: [u64; 4]) -> bool {
 /// Returns whether light may be hidden between them: two adjacent ones are on faces of which only one looks away
 /// from it.
 pub fn may_hide_light(corners: [u64; 4]) -> bool {
-    any_beside(corners, |one, other| {
+    any_adjacent(corners, |one, other| {
         one != 0 && other != 0 && unlit_lights(one) != unlit_lights(other)
     })
 }
 
 /// Returns whether a condition holds for any two adjacent corners of a cell.
 #[inline(always)]
-fn any_beside([a, b, c, d]: [u64; 4], is_so: impl Fn(u64, u64) -> bool) -> bool {
-    is_so(a, b) || is_so(a, c) || is_so(b, d) || is_so(c, d)
+fn any_adjacent([a, b, c, d]: [u64; 4], holds: impl Fn(u64, u64) -> bool) -> bool {
+    holds(a, b) || holds(a, c) || holds(b, d) || holds(c, d)
 }
 
 /// Returns whether two different faces share an edge and face the same lights, or one of the marks is of no face.
 fn are_neighbours(a: u64, b: u64) -> bool {
-    let corners = |mark: u64| [mark, mark >> BITS, mark >> (2 * BITS)].map(|bits| bits & CORNER);
-    let others = corners(b);
-    let shared = corners(a).into_iter().filter(|own| others.contains(own));
+    let corners = |mark: u64| {
+        [mark, mark >> CORNER_BITS, mark >> (2 * CORNER_BITS)].map(|bits| bits & CORNER_MASK)
+    };
+    let corners_of_b = corners(b);
+    let shared = corners(a)
+        .into_iter()
+        .filter(|corner| corners_of_b.contains(corner));
     a == 0 || b == 0 || (shared.count() >= 2 && unlit_lights(a) == unlit_lights(b))
 }
 

@@ -1,6 +1,6 @@
 //! The size of a pixel: along rays, and on the surfaces that they hit.
 
-use super::thresholds::{GRAZING, HIDDEN, HIGHLIGHT_REACH, SLIPPING};
+use super::thresholds::{FULL_SHADOW_DEPTH, GRAZING, HIGHLIGHT_REACH, THIN_WIDTH};
 use crate::simd::{Real, SimdFloat};
 
 /// Width of a pixel along rays: where they start, and how it changes with distance.
@@ -85,14 +85,14 @@ impl<L: SimdFloat> Footprint<L> {
 
     /// Greatest width of things whose shadows may slip between samples.
     #[inline(always)]
-    pub fn slipping(&self) -> L {
-        self.length * self.length.like_f64(SLIPPING)
+    pub fn thin_width(&self) -> L {
+        self.length * self.length.like_f64(THIN_WIDTH)
     }
 
     /// Distance from the edge of a shadow beyond which a pixel is entirely inside of it.
     #[inline(always)]
-    pub fn hidden(&self) -> L {
-        self.length * self.length.like_f64(HIDDEN)
+    pub fn full_shadow_depth(&self) -> L {
+        self.length * self.length.like_f64(FULL_SHADOW_DEPTH)
     }
 
     /// The spread of the cone of the rays that arrive here.
@@ -102,21 +102,21 @@ impl<L: SimdFloat> Footprint<L> {
     }
 
     /// Distance in pixels to a highlight with exponent 1/`size`² whose light is at `light_distance`, where
-    /// half-vector and normal differ by `off`. Infinity for a highlight that is wider than [`SLIPPING`] pixels.
+    /// half-vector and normal differ by `off`. Infinity for a highlight that is wider than [`THIN_WIDTH`] pixels.
     #[inline(always)]
     pub fn highlight_distance(&self, size: f64, off: L, light_distance: L) -> L {
         let half = off.like_f64(0.5);
         let per_pixel = self.turn + (self.cone.spread + self.length / light_distance) * half;
-        let beside = off - off.like_f64(HIGHLIGHT_REACH * size);
-        let sharp = off.like_f64(size / SLIPPING).less(per_pixel);
-        pixels(sharp, beside, per_pixel)
+        let distance = off - off.like_f64(HIGHLIGHT_REACH * size);
+        let sharp = off.like_f64(size / THIN_WIDTH).less(per_pixel);
+        distance_in_pixels(sharp, distance, per_pixel)
     }
 }
 
-/// `beside / width` where the mask is set and `beside` is positive; infinity elsewhere. Where it is not positive, a
-/// sample sees the thing itself.
+/// `distance / width` where the mask is set and `distance` is positive; infinity elsewhere. Where it is not positive,
+/// a sample sees the thing itself.
 #[inline(always)]
-pub fn pixels<L: SimdFloat>(mask: L::Mask, beside: L, width: L) -> L {
-    let outside = mask & beside.like(L::Real::ZERO).less(beside);
-    L::select(outside, beside / width, beside.like(L::Real::INFINITY))
+pub fn distance_in_pixels<L: SimdFloat>(mask: L::Mask, distance: L, width: L) -> L {
+    let outside = mask & distance.like(L::Real::ZERO).less(distance);
+    L::select(outside, distance / width, distance.like(L::Real::INFINITY))
 }

@@ -7,7 +7,7 @@ use super::bounce::Bounce;
 use super::bundle::{Shaft, blur_margin};
 use super::candidates::{Candidates, Targets};
 use super::cull::Scratch;
-use super::doubt::{Uncertainty, farthest_off, is_filtered, widest_blur};
+use super::doubt::{Uncertainty, is_filtered, max_hit_error, widest_blur};
 use super::footprint::RayCone;
 use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
@@ -15,9 +15,9 @@ use super::paths::{IgnoredPrimitive, Paths, real};
 use super::samples::{EdgeDetail, Samples};
 use super::shade::Shader;
 use super::stats::Rays;
-use super::thin_cull::may_slip;
+use super::thin_cull::may_pass_thin;
 use super::thin_margin::ThinMargin;
-use super::thresholds::SLIPPING;
+use super::thresholds::THIN_WIDTH;
 use super::walk::Stack;
 use crate::plan::{CulledFaces, HitOrder, Plan, Show};
 use crate::primitive::{Blur, CAUTION, Kind, Ray, roundings};
@@ -26,22 +26,22 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 /// Least number of packets for which entry points into the trees are computed: computing them costs about as much
 /// as one packet's traversal. Most retraced samples come in two packets; with entry points for these, a mesh of
 /// 100,000 faces takes 1.05 times as long.
-const FEWEST_NARROWED: usize = 3;
+const MIN_NARROWED_PACKETS: usize = 3;
 
 impl<L: SimdFloat> Bounce<L> {
-    /// Becomes the camera rays through the samples, which can meet what is in `seen`.
+    /// Becomes the camera rays through the samples, which can meet what is in `candidates`.
     #[inline(always)]
     pub fn start<const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         samples: &Samples<L::Real>,
-        seen: &Candidates,
+        candidates: &Candidates,
         edges: EdgeDetail,
     ) {
         let (token, view) = (kernel.token, &kernel.plan.view);
         self.clear();
         self.order.clear();
-        self.seen.clone_from(seen);
+        self.candidates.clone_from(candidates);
         let lane_number = L::from_fn(token, |lane| L::Real::from_f64(lane as f64));
         for first in (0..samples.x.len()).step_by(L::WIDTH) {
             let x = L::load(token, &samples.x[first..]);
@@ -57,7 +57,7 @@ impl<L: SimdFloat> Bounce<L> {
         // remains of a cell that is not divided. In 1 scene of 30, this is more than one level, and at most 7, in
         // one pixel or a few; doubting them would make meshes take 1.2 times as long, and a mirror with a mesh 1.4
         // times.
-        let is_doubted = edges != EdgeDetail::Signed && kernel.plan.is_doubted();
+        let is_doubted = edges != EdgeDetail::Signatures && kernel.plan.is_doubted();
         if is_filtered::<L, TREE>() && is_doubted {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
@@ -75,7 +75,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Returns whether things that may slip between samples are looked for.
     fn looks_for_thin(&self) -> bool {
-        self.edge_detail == EdgeDetail::Near
+        self.edge_detail == EdgeDetail::Thin
     }
 
     /// Returns the primitives on which the rays of a packet start.
@@ -95,7 +95,7 @@ impl<L: SimdFloat> Bounce<L> {
     }
 
     /// For each mesh, the faces that the rays of the packets need not be tested against; empty for none.
-    fn unseen_by<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<CulledFaces>>] {
+    fn culled_faces<'p>(&self, plan: &'p Plan<L::Real>) -> &'p [Option<Arc<CulledFaces>>] {
         if self.parents.is_empty() {
             &plan.unseen_faces
         } else {
@@ -105,46 +105,46 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds what the packets hit, and what can cast shadows there. Returns whether anything is to be shaded.
     #[inline(always)]
-    pub fn find<const TREE: bool>(
+    pub fn find_hits<const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         scratch: &mut Scratch<L::Real>,
     ) -> bool {
-        if self.seen.is_empty() {
+        if self.candidates.is_empty() {
             return false;
         }
         let plan = kernel.plan;
         // Something thin may be next to rays that hit nothing.
-        self.find_thin(plan);
-        self.enter(kernel);
+        self.find_thin_candidates(plan);
+        self.find_entry_points(kernel);
         let infinity = kernel.infinity();
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
-        let culled_faces = self.unseen_by(plan);
+        let culled_faces = self.culled_faces(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
             let rays = packet.rays;
             let paths = Paths { rays, ignored };
             let targets = Targets {
-                candidates: &self.seen,
+                candidates: &self.candidates,
                 entry_points: &self.entry_points,
                 light: None,
                 culled_faces,
             };
             let (active, stack) = (packet.active, &mut scratch.stack);
             let mut uncertainty = self.uncertainties.get_mut(index);
-            let blur = uncertainty.as_ref().map_or(none, |own| own.blur);
+            let blur = uncertainty.as_ref().map_or(none, |rays| rays.blur);
             let doubt;
-            (packet.near, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
+            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
                 uncertainty.doubt = doubt;
             }
-            let hit = packet.near.t.less(infinity) & active;
-            bounds.add(hit, rays.at(packet.near.t));
+            let hit = packet.nearest.t.less(infinity) & active;
+            bounds.add(hit, rays.at(packet.nearest.t));
             if TREE {
-                farthest = L::select(hit, farthest.max(packet.near.t), farthest);
+                farthest = L::select(hit, farthest.max(packet.nearest.t), farthest);
             }
         }
         let Some(mut ball) = bounds.ball() else {
@@ -159,30 +159,32 @@ impl<L: SimdFloat> Bounce<L> {
         }
         // Hits may be off, most of all on large things.
         let farthest = farthest.greatest();
-        let off = if self.uncertainties.is_empty() {
+        let hit_error = if self.uncertainties.is_empty() {
             L::Real::ZERO
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
-            let around = bounds.around().max_abs();
+            let largest_coordinate = bounds.bounding_box().max_abs();
             let size = plan.farthest + plan.farthest + plan.farthest_middle;
-            farthest_off(blur.at(farthest), around + size)
+            max_hit_error(blur.at(farthest), largest_coordinate + size)
         };
-        ball.radius += off.to_f64();
+        ball.radius += hit_error.to_f64();
         if plan.screen.is_some() {
             // Includes what shadow rays pass at less than a pixel's distance.
             let footprint = if self.looks_for_thin() {
-                Some(self.longest(kernel))
+                Some(self.max_footprint_length(kernel))
             } else {
                 None
             };
-            for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
-                kernel.keep_between(between, light, (&ball, footprint), scratch);
+            for (light_candidates, light) in self.lights.iter_mut().zip(&plan.lights) {
+                kernel.gather_casters(light_candidates, light, (&ball, footprint), scratch);
             }
             if TREE && self.is_worth_narrowing() {
                 // The hit of a long ray is off by a few roundings of its length.
-                let hits = bounds.around().widened(farthest * roundings() + lift + off);
-                for (between, light) in self.lights.iter_mut().zip(&plan.lights) {
-                    kernel.enter_towards(between, light, (&hits, footprint));
+                let hits = bounds
+                    .bounding_box()
+                    .widened(farthest * roundings() + lift + hit_error);
+                for (light_candidates, light) in self.lights.iter_mut().zip(&plan.lights) {
+                    kernel.find_shadow_entry_points(light_candidates, light, (&hits, footprint));
                 }
             }
         }
@@ -191,17 +193,17 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Returns whether there are enough packets to make entry points into the trees worthwhile.
     fn is_worth_narrowing(&self) -> bool {
-        self.packets.len() >= FEWEST_NARROWED
+        self.packets.len() >= MIN_NARROWED_PACKETS
     }
 
     /// Finds where the packets enter the trees, and whether something thin may slip between their rays there.
     #[inline(always)]
-    fn enter<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
+    fn find_entry_points<const TREE: bool>(&mut self, kernel: Kernel<L, TREE>) {
         self.entry_points.reset();
         let Some((geometry, _)) = kernel.geometry() else {
             return;
         };
-        if !self.seen.has_geometry || !kernel.plan.is_boxed || !self.is_worth_narrowing() {
+        if !self.candidates.has_geometry || !kernel.plan.is_boxed || !self.is_worth_narrowing() {
             return;
         }
         let mut origins = Bounds::new(kernel.token);
@@ -210,32 +212,33 @@ impl<L: SimdFloat> Bounce<L> {
             origins.add(*active, rays.origin);
             directions.add(*active, rays.direction);
         }
-        let (origins, directions) = (origins.around(), directions.around());
+        let (origins, directions) = (origins.bounding_box(), directions.bounding_box());
         let size = origins.max_abs() + geometry.bvh.bounds.max_abs();
         let blur = widest_blur(kernel.token, &self.uncertainties);
         let slack = size * roundings() + blur_margin(&blur, L::Real::ZERO, size);
         let shaft = Shaft::of(&origins.widened(slack), &directions);
         let infinity = L::Real::INFINITY;
-        self.seen.has_geometry =
+        self.candidates.has_geometry =
             self.entry_points
                 .narrow::<L>(kernel.token, geometry, &shaft, infinity);
         if self.thin.has_geometry {
             let (width, spread) = self.widest_cone(kernel);
-            let margin = ThinMargin::slipping(width, spread);
-            self.thin.has_geometry = may_slip::<L>(kernel.token, geometry, &shaft, &margin);
+            let margin = ThinMargin::new(width, spread);
+            self.thin.has_geometry = may_pass_thin::<L>(kernel.token, geometry, &shaft, &margin);
         }
     }
 
     /// Finds what camera rays can meet, or just miss, between samples; nothing unless that is looked for. For
-    /// mirrored rays, [`Self::aim`] does this.
-    fn find_thin(&mut self, plan: &Plan<L::Real>) {
+    /// mirrored rays, [`Self::find_candidates`] does this.
+    fn find_thin_candidates(&mut self, plan: &Plan<L::Real>) {
         if !self.looks_for_thin() {
             self.thin.clear();
         } else if self.parents.is_empty() {
-            let slipping = L::Real::from_f64(SLIPPING);
-            self.thin.keep_narrow(&self.seen, plan, |center, radius| {
-                plan.view.width_at(center, radius) * slipping
-            });
+            let thin_width = L::Real::from_f64(THIN_WIDTH);
+            self.thin
+                .keep_narrow(&self.candidates, plan, |center, radius| {
+                    plan.view.width_at(center, radius) * thin_width
+                });
         }
     }
 
@@ -253,15 +256,16 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Greatest length of a pixel's footprint on what was hit; zero without edges.
     #[inline(always)]
-    fn longest<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
-        let mut longest = kernel.splat(0.0);
+    fn max_footprint_length<const TREE: bool>(&self, kernel: Kernel<L, TREE>) -> L::Real {
+        let mut max_footprint_length = kernel.splat(0.0);
         for (edge, packet) in self.edges.iter().zip(&self.packets) {
-            let hit = packet.near.t.less(kernel.infinity()) & packet.active;
-            let width = edge.cone.width_at(packet.near.t);
-            let there = (hit, packet.rays.direction, width);
-            longest = longest.max(kernel.longest_on(packet.near.number, there));
+            let hit = packet.nearest.t.less(kernel.infinity()) & packet.active;
+            let width = edge.cone.width_at(packet.nearest.t);
+            let hits = (hit, packet.rays.direction, width);
+            max_footprint_length =
+                max_footprint_length.max(kernel.max_length_on(packet.nearest.number, hits));
         }
-        longest.greatest() * L::Real::from_f64(1.0 + CAUTION)
+        max_footprint_length.greatest() * L::Real::from_f64(1.0 + CAUTION)
     }
 
     /// Shades the packets; adds the rays that mirrors send on to `next`.
@@ -275,7 +279,7 @@ impl<L: SimdFloat> Bounce<L> {
     ) {
         let looks_for_thin = self.looks_for_thin();
         let has_gaps =
-            self.edge_detail >= EdgeDetail::Bordered && kernel.may_leave_gaps(&self.lights);
+            self.edge_detail >= EdgeDetail::Borders && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let shader = Shader {
@@ -285,7 +289,7 @@ impl<L: SimdFloat> Bounce<L> {
                 looks_for_thin,
                 thin: &self.thin,
                 lights: &self.lights,
-                gaps: has_gaps.then_some(&self.lights),
+                gap_lights: has_gaps.then_some(&self.lights),
             };
             let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
             let packet = &mut self.packets[index];
@@ -298,8 +302,9 @@ impl<L: SimdFloat> Bounce<L> {
             let paths = mirrored.paths;
             next.packets
                 .push(Packet::new(kernel, paths.rays, mirrored.active));
-            let own = self.uncertainties.get(index);
-            next.uncertainties.extend(own.map(Uncertainty::of_mirrored));
+            let uncertainty = self.uncertainties.get(index);
+            next.uncertainties
+                .extend(uncertainty.map(Uncertainty::of_mirrored));
             next.parents.push(ReflectionParent {
                 packet: index,
                 ignored: paths.ignored,
@@ -313,7 +318,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Finds what mirrored rays can meet.
     #[inline(always)]
-    pub fn aim<const TREE: bool>(
+    pub fn find_candidates<const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         scratch: &mut Scratch<L::Real>,
@@ -330,32 +335,32 @@ impl<L: SimdFloat> Bounce<L> {
             None
         };
         let Some(beam) = beam.and_then(|beam| beam.widened(blur.start, blur.spread)) else {
-            self.seen = Candidates::all(plan);
-            self.thin.clone_from(&self.seen);
+            self.candidates = Candidates::all(plan);
+            self.thin.clone_from(&self.candidates);
             return;
         };
         let start_plane = self.start_plane(plan);
         if !self.looks_for_thin() {
-            return kernel.keep_met(&mut self.seen, &beam, start_plane, scratch);
+            return kernel.gather_met(&mut self.candidates, &beam, start_plane, scratch);
         }
         let (width, spread) = self.widest_cone(kernel);
         // Includes what the rays pass at less than a pixel's distance.
         let wide = beam.widened(width, spread);
-        kernel.keep_met(
-            &mut self.seen,
+        kernel.gather_met(
+            &mut self.candidates,
             wide.as_ref().unwrap_or(&beam),
             start_plane,
             scratch,
         );
-        let slipping = |center, radius| {
+        let thin_width = |center, radius| {
             let width = width + spread * beam.distance(center, radius);
-            width * L::Real::from_f64(SLIPPING)
+            width * L::Real::from_f64(THIN_WIDTH)
         };
         if wide.is_some() {
-            self.thin.keep_narrow(&self.seen, plan, slipping);
+            self.thin.keep_narrow(&self.candidates, plan, thin_width);
         } else {
             self.thin
-                .keep_narrow(&Candidates::all(plan), plan, slipping);
+                .keep_narrow(&Candidates::all(plan), plan, thin_width);
         }
     }
 
@@ -370,14 +375,14 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// Regroups nearby hits into the same packets, if the plan asks for it.
     #[inline(always)]
-    pub fn arrange<const TREE: bool>(
+    pub fn regroup_hits<const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         samples: &Samples<L::Real>,
     ) {
         if TREE && kernel.plan.hit_order == HitOrder::OfPlaces {
             let packets = (&mut self.packets[..], &mut self.uncertainties[..]);
-            self.order.arrange(kernel, packets, samples);
+            self.order.regroup_hits(kernel, packets, samples);
         }
     }
 }

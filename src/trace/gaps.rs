@@ -25,7 +25,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             if weight_of(light).is_none() || 1 < shadows {
                 break;
             }
-            shadows += candidates.casters.outlines(self.plan);
+            shadows += candidates.casters.outline_count(self.plan);
         }
         1 < shadows
     }
@@ -52,8 +52,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let Some(weight) = weight_of(index) else {
                         break;
                     };
-                    let unlit = hit.here & !self.is_lit(lit, index);
-                    if !unlit.any() || candidates.casters.outlines(self.plan) == 0 {
+                    let unlit = hit.lanes & !self.is_lit(lit, index);
+                    if !unlit.any() || candidates.casters.outline_count(self.plan) == 0 {
                         continue;
                     }
                     let light = &self.plan.lights[index];
@@ -63,10 +63,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     // If the light itself is too faint to be seen there, its shadow is not visible.
                     let normal = hit.surface.normal;
                     let cosine = normal.dot(direction);
-                    let from = (cosine, normal, direction - view);
+                    let vectors = (cosine, normal, direction - view);
                     let facing = self.splat(0.0).less(cosine);
-                    let dark = unlit & facing & material.shows(self.plan, light, from);
-                    if !dark.any() {
+                    let dark_lanes = unlit & facing & material.shows(self.plan, light, vectors);
+                    if !dark_lanes.any() {
                         continue;
                     }
                     let (paths, distance) = self.towards(hit, light, (direction, distance));
@@ -79,8 +79,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     let test = DepthTest {
                         methods: &self.plan.methods,
                         distance,
-                        deep: footprint.hidden(),
-                        free: dark,
+                        full_depth: footprint.full_shadow_depth(),
+                        open_lanes: dark_lanes,
                         deepest: self.splat(0.0),
                         caster: self.splat(0.0),
                     };
@@ -115,12 +115,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> L {
         scan_lists(self.plan, targets.candidates, paths, &mut test);
         let exact = Blur::splat(self.token, Blur::NONE);
-        if test.free.any()
-            && let Some(tree_scan) = self.tree_scan(targets, (test.free, exact))
+        if test.open_lanes.any()
+            && let Some(tree_scan) = self.tree_scan(targets, (test.open_lanes, exact))
         {
             tree_scan.scan(paths, stack, &mut test);
         }
-        L::select(test.free, test.caster, self.splat(0.0))
+        L::select(test.open_lanes, test.caster, self.splat(0.0))
     }
 }
 
@@ -130,9 +130,9 @@ struct DepthTest<'a, L: SimdFloat> {
     /// Length of the paths.
     distance: L,
     /// Depth inside an outline beyond which the caster hides the whole pixel.
-    deep: L,
+    full_depth: L,
     /// Where nothing was found yet that hides the whole pixel.
-    free: L::Mask,
+    open_lanes: L::Mask,
     /// Greatest depth of the paths inside an outline so far, and the mark of that caster.
     deepest: L,
     caster: L,
@@ -141,12 +141,12 @@ struct DepthTest<'a, L: SimdFloat> {
 impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
     #[inline(always)]
     fn reach(&self) -> L {
-        L::select(self.free, self.distance, self.distance.like_f64(-1.0))
+        L::select(self.open_lanes, self.distance, self.distance.like_f64(-1.0))
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        !self.free.any()
+        !self.open_lanes.any()
     }
 
     #[inline(always)]
@@ -158,21 +158,21 @@ impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
         number: usize,
     ) {
         let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);
-        let is_met = self.free & t.less(self.distance);
+        let is_met = self.open_lanes & t.less(self.distance);
         if !is_met.any() {
             return;
         }
         let Some(depth) = depth(primitive, prepared, paths) else {
-            self.free = self.free & !is_met;
+            self.open_lanes = self.open_lanes & !is_met;
             return;
         };
-        let own = depth.like_f64(mark_of(number));
+        let mark = depth.like_f64(mark_of(number));
         let is_first = self.caster.less(depth.like(L::Real::ONE));
-        let is_equal = depth.same(self.deepest) & own.less(self.caster);
+        let is_equal = depth.same(self.deepest) & mark.less(self.caster);
         let deeper = is_met & (is_first | self.deepest.less(depth) | is_equal);
         self.deepest = L::select(deeper, depth, self.deepest);
-        self.caster = L::select(deeper, own, self.caster);
-        self.free = self.free & !(is_met & self.deep.less(depth));
+        self.caster = L::select(deeper, mark, self.caster);
+        self.open_lanes = self.open_lanes & !(is_met & self.full_depth.less(depth));
     }
 }
 

@@ -88,7 +88,7 @@ impl<'a, R: Real> HitPrimitive<'a, R> {
 /// The data of primitives that their hits need, lane by lane.
 pub struct Gathered<R> {
     /// A corner, or the centre.
-    place: Columns<R>,
+    anchor: Columns<R>,
     normal: Columns<R>,
     /// Of a triangle, 1 if it shares a corner with others, else 0, and the longest edge; of a sphere, the radius
     /// and one over it.
@@ -109,7 +109,7 @@ impl<R: Real> Gathered<R> {
             Form::Flat(_) | Form::Round(_) => None,
         };
         Self {
-            place: Columns::new(),
+            anchor: Columns::new(),
             normal: Columns::new(),
             measures: [zeros; 2],
             curved,
@@ -130,7 +130,7 @@ impl<R: Real> Gathered<R> {
                 }
             }
             Form::Round(sphere) => {
-                self.place.set(lane, sphere.center);
+                self.anchor.set(lane, sphere.center);
                 self.measures[0][lane] = sphere.radius;
                 self.measures[1][lane] = R::ONE / sphere.radius;
             }
@@ -139,7 +139,7 @@ impl<R: Real> Gathered<R> {
 
     #[inline(always)]
     fn set_flat(&mut self, lane: usize, triangle: &PackedTriangle<R>) {
-        self.place.set(lane, triangle.corners[0]);
+        self.anchor.set(lane, triangle.corners[0]);
         self.normal.set(lane, triangle.normal);
         self.measures[0][lane] = if triangle.in_mesh { R::ONE } else { R::ZERO };
         self.measures[1][lane] = triangle.longest;
@@ -160,12 +160,12 @@ impl<R: Real> Gathered<R> {
     ) {
         mixed.clear();
         let materials = L::load(token, &self.materials);
-        let mut left = self.mask::<L>(token).bits();
-        while left != 0 {
-            let material = self.materials[left.trailing_zeros() as usize];
-            let here = materials.same(materials.like(material));
-            left &= !here.bits();
-            mixed.add(here, (material - R::ONE).to_f64() as u32);
+        let mut remaining = self.mask::<L>(token).bits();
+        while remaining != 0 {
+            let material = self.materials[remaining.trailing_zeros() as usize];
+            let lanes = materials.same(materials.like(material));
+            remaining &= !lanes.bits();
+            mixed.add(lanes, (material - R::ONE).to_f64() as u32);
         }
     }
 
@@ -178,13 +178,13 @@ impl<R: Real> Gathered<R> {
         t: L,
     ) -> SurfacePoint<L> {
         let token = t.token();
-        let place = self.place.load::<L>(token);
+        let anchor = self.anchor.load::<L>(token);
         let [first, second] = &self.measures;
         let (first, second) = (L::load(token, first), L::load(token, second));
         match (&hit_primitive.form, hit_primitive.mesh) {
             (Form::Round(_), _) => {
                 let round = Round {
-                    center: place,
+                    center: anchor,
                     radius: first,
                     curvature: second,
                 };
@@ -192,7 +192,7 @@ impl<R: Real> Gathered<R> {
             }
             (Form::Flat(_) | Form::Curved(..), mesh) => {
                 let flat = Flat {
-                    corner: place,
+                    corner: anchor,
                     normal: self.normal.load::<L>(token),
                     in_mesh: first,
                     longest: second,

@@ -12,12 +12,12 @@ const STEPS: [[f64; 3]; 6] = [
     [1.0, 1.0, 0.93],
 ];
 /// The count that is shown white; 1 is black.
-const MOST: f64 = 1000.0;
+const WHITE_COUNT: f64 = 1000.0;
 
 /// Returns the colour of a count, on a logarithmic scale.
 pub fn heat<R: Real>(count: f64) -> [R; 3] {
     let last = STEPS.len() - 1;
-    let at = (count.max(1.0).ln() / MOST.ln()).min(1.0) * last as f64;
+    let at = (count.max(1.0).ln() / WHITE_COUNT.ln()).min(1.0) * last as f64;
     let below = (at as usize).min(last - 1);
     let share = at - below as f64;
     let mix = |channel: usize| {

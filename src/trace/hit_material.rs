@@ -28,10 +28,10 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
 
     /// Returns which of the hits have highlights; `None` if no material has any.
     #[inline(always)]
-    pub fn shiny(&self, here: L::Mask) -> Option<L::Mask> {
+    pub fn shiny(&self, lanes: L::Mask) -> Option<L::Mask> {
         match self {
             Self::One(Surface { exponent: None, .. }) => None,
-            Self::One(_) => Some(here),
+            Self::One(_) => Some(lanes),
             Self::Several(mixed) => mixed.shiny,
         }
     }

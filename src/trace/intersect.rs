@@ -2,7 +2,7 @@
 
 use super::candidates::Targets;
 use super::doubt::Doubt;
-use super::paths::{NOTHING, Paths, real};
+use super::paths::{NO_PRIMITIVE, Paths, real};
 use super::scan::{Test, TreeScan, scan_lists};
 use super::thin_margin::ThinMargin;
 use super::walk::Stack;
@@ -38,7 +38,7 @@ impl<L: SimdFloat, const TREE: bool> Copy for Kernel<'_, L, TREE> {}
 pub struct Nearest<L> {
     /// Distance along the ray; infinity if nothing was hit.
     pub t: L,
-    /// Number of the primitive, see [`crate::primitive::Primitives`]; [`NOTHING`] if nothing was hit.
+    /// Number of the primitive, see [`crate::primitive::Primitives`]; [`NO_PRIMITIVE`] if nothing was hit.
     pub number: L,
 }
 
@@ -106,7 +106,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) -> (Nearest<L>, L::Mask) {
         let nothing = Nearest {
             t: self.infinity(),
-            number: self.splat(NOTHING),
+            number: self.splat(NO_PRIMITIVE),
         };
         let is_tied = !self.plan.ties.is_empty();
         let mut best = nothing;
@@ -121,16 +121,16 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         if let Some(tree_scan) = self.tree_scan(targets, (active, blur)) {
             // A value that is lent to an out-of-line function stays in memory; the originals can stay in registers.
             let (mut found, mut undecided) = (best, doubt);
-            self.nearest_in(&tree_scan, paths, (&mut found, &mut undecided), stack);
+            self.nearest_in_tree(&tree_scan, paths, (&mut found, &mut undecided), stack);
             (best, doubt) = (found, undecided);
         }
-        let doubt = if doubt.is_asked() {
-            (doubt.before(best.t) | doubt.is_tie(best.t, doubt.second)) & active
+        let doubt = if doubt.is_enabled() {
+            (doubt.may_hit_before(best.t) | doubt.is_tie(best.t, doubt.second_nearest)) & active
         } else {
             active & !active
         };
         if is_tied {
-            best = self.settled(targets, (paths, blur), best, stack);
+            best = self.resolve_ties(targets, (paths, blur), best, stack);
         }
         (best, doubt)
     }
@@ -139,7 +139,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// results are written in place: returned by value, they would be copied back and forth, and the processor would
     /// stall on that.
     #[inline(never)]
-    fn nearest_in(
+    fn nearest_in_tree(
         self,
         tree_scan: &TreeScan<L>,
         paths: &Paths<L>,
@@ -161,45 +161,50 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         );
     }
 
-    /// Finds occluders of the paths nearer than `distance`, only where `wanted` is set. If `thick` is given,
+    /// Finds occluders of the paths nearer than `distance`, only where `wanted` is set. If `thin_width` is given,
     /// occluders that are thicker are also reported by themselves, and the search goes on until one is found.
     #[inline(always)]
     pub fn blocked(
         self,
         targets: Targets<L::Real>,
         (paths, doubt): (&Paths<L>, Doubt<L, TREE>),
-        (distance, wanted, thick): (L, L::Mask, Option<L>),
+        (distance, wanted, thin_width): (L, L::Mask, Option<L>),
         stack: &mut Stack<L::Real>,
     ) -> Blocked<L> {
         let none = !wanted & wanted;
         let mut state = OcclusionState {
             free: wanted,
-            met: none,
-            passed: none,
+            possible_hit: none,
+            certain_hit: none,
             doubt,
         };
         let mut test = BlockedTest::<L, TREE, true> {
             methods: &self.plan.methods,
             distance,
-            sure: doubt.ahead_of(distance),
+            certain_distance: doubt.lower_bound(distance),
             reach: distance,
-            thick,
+            thin_width,
             state: &mut state,
         };
         scan_lists(self.plan, targets.candidates, paths, &mut test);
         if state.free.any()
             && let Some(tree_scan) = self.tree_scan(targets, (state.free, state.doubt.blur))
         {
-            let mut known = state;
-            self.blocked_in_tree(&tree_scan, paths, (distance, thick, &mut known), stack);
-            state = known;
+            let mut tree_state = state;
+            self.blocked_in_tree(
+                &tree_scan,
+                paths,
+                (distance, thin_width, &mut tree_state),
+                stack,
+            );
+            state = tree_state;
         }
         Blocked {
-            anywhere: wanted & (!state.free | state.passed | state.met),
+            anywhere: wanted & (!state.free | state.certain_hit | state.possible_hit),
             by_thick: wanted & !state.free,
             // Possible hits behind the light do not count. A thin occluder does not settle whether there is a wide
             // one.
-            doubt: state.free & state.doubt.from.at_most(distance),
+            doubt: state.free & state.doubt.undecided_from.at_most(distance),
         }
     }
 
@@ -209,23 +214,23 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self,
         tree_scan: &TreeScan<L>,
         paths: &Paths<L>,
-        (distance, thick, state): (L, Option<L>, &mut OcclusionState<L, TREE>),
+        (distance, thin_width, state): (L, Option<L>, &mut OcclusionState<L, TREE>),
         stack: &mut Stack<L::Real>,
     ) {
         L::vectorize(
             self.token,
             #[inline(always)]
             || {
-                let all = distance.like_f64(1.0 + FAR_CAUTION);
+                let whole_distance = distance.like_f64(1.0 + FAR_CAUTION);
                 let mut test = BlockedTest::<L, TREE, false> {
                     methods: &self.plan.methods,
                     distance,
-                    sure: state.doubt.ahead_of(distance),
+                    certain_distance: state.doubt.lower_bound(distance),
                     reach: match tree_scan.back_from {
                         None => distance,
-                        Some(_) => all * state.doubt.stretch(distance),
+                        Some(_) => whole_distance * state.doubt.stretch(distance),
                     },
-                    thick,
+                    thin_width,
                     state,
                 };
                 tree_scan.scan(paths, stack, &mut test);
@@ -259,7 +264,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
 {
     #[inline(always)]
     fn reach(&self) -> L {
-        self.doubt.after(self.best.t)
+        self.doubt.upper_bound(self.best.t)
     }
 
     #[inline(always)]
@@ -271,25 +276,25 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         number: usize,
     ) {
         let doubt = &mut *self.doubt;
-        let t = if doubt.is_asked() {
-            let (primitive, asked) = ((primitive, number), (self.methods, self.active));
-            let Some((t, from)) = doubt.distance::<LISTED, P>(primitive, prepared, paths, asked)
+        let t = if doubt.is_enabled() {
+            let (primitive, query) = ((primitive, number), (self.methods, self.active));
+            let Some((t, from)) = doubt.distance::<LISTED, P>(primitive, prepared, paths, query)
             else {
                 return;
             };
-            doubt.from = doubt.from.min(from);
-            doubt.second = doubt.second.min(t.max(self.best.t));
+            doubt.undecided_from = doubt.undecided_from.min(from);
+            doubt.second_nearest = doubt.second_nearest.min(t.max(self.best.t));
             t
         } else {
             paths.distance::<LISTED, P>(primitive, prepared, number, self.methods)
         };
-        let own = t.like(real(number));
+        let numbers = t.like(real(number));
         let mut closer = t.less(self.best.t);
         if !LISTED {
-            closer = closer | (t.same(self.best.t) & own.less(self.best.number));
+            closer = closer | (t.same(self.best.t) & numbers.less(self.best.number));
         }
         self.best.t = L::select(closer, t, self.best.t);
-        self.best.number = L::select(closer, own, self.best.number);
+        self.best.number = L::select(closer, numbers, self.best.number);
     }
 }
 
@@ -298,11 +303,11 @@ struct BlockedTest<'a, L: SimdFloat, const TREE: bool, const LISTED: bool> {
     methods: &'a Methods,
     distance: L,
     /// Hits nearer than this are nearer than `distance` however they were rounded.
-    sure: L,
+    certain_distance: L,
     /// How far boxes are tested.
     reach: L,
     /// If given, primitives that are no thicker do not end the search.
-    thick: Option<L>,
+    thin_width: Option<L>,
     state: &'a mut OcclusionState<L, TREE>,
 }
 
@@ -312,10 +317,10 @@ struct OcclusionState<L: SimdFloat, const TREE: bool> {
     /// Where no certain hit was found yet, except on primitives that are too thin to end the search.
     free: L::Mask,
     /// Where a hit was found, certain or not; only noted if doubt is tracked.
-    met: L::Mask,
-    /// Where a certain hit was found while a thickness is given. Noting it in `met` makes plain pictures of lists
-    /// 1.06 times as slow.
-    passed: L::Mask,
+    possible_hit: L::Mask,
+    /// Where a certain hit was found while a thickness is given. Noting it in `possible_hit` makes plain pictures of
+    /// lists 1.06 times as slow.
+    certain_hit: L::Mask,
     doubt: Doubt<L, TREE>,
 }
 
@@ -341,28 +346,28 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
         number: usize,
     ) {
         let state = &mut *self.state;
-        let is_met = if state.doubt.is_asked() {
-            let (primitive, asked) = ((primitive, number), (self.methods, state.free));
+        let is_met = if state.doubt.is_enabled() {
+            let (primitive, query) = ((primitive, number), (self.methods, state.free));
             let distance = state
                 .doubt
-                .distance::<LISTED, P>(primitive, prepared, paths, asked);
+                .distance::<LISTED, P>(primitive, prepared, paths, query);
             let Some((t, from)) = distance else { return };
             // A certain hit leaves no doubt about itself; if it does not end the search, doubt about what is behind
             // it may remain.
-            let is_met = t.less(self.sure) & self.distance.less(from);
-            let open = L::select(is_met, state.doubt.from, from.min(t));
-            state.doubt.from = state.doubt.from.min(open);
-            state.met = state.met | t.less(self.distance);
+            let is_met = t.less(self.certain_distance) & self.distance.less(from);
+            let undecided_from = L::select(is_met, state.doubt.undecided_from, from.min(t));
+            state.doubt.undecided_from = state.doubt.undecided_from.min(undecided_from);
+            state.possible_hit = state.possible_hit | t.less(self.distance);
             is_met
         } else {
             let t = paths.distance::<LISTED, P>(primitive, prepared, number, self.methods);
             t.less(self.distance)
         };
-        let is_end = match self.thick {
+        let is_end = match self.thin_width {
             None => is_met,
-            Some(thick) => {
-                state.passed = state.passed | state.free & is_met;
-                is_met & thick.less(primitive.blocking_width(paths.rays.direction))
+            Some(thin_width) => {
+                state.certain_hit = state.certain_hit | state.free & is_met;
+                is_met & thin_width.less(primitive.blocking_width(paths.rays.direction))
             }
         };
         state.free = state.free & !is_end;

@@ -3,20 +3,20 @@
 use super::cell::Cell;
 use super::faces::may_hide_light;
 use super::points::PointTable;
-use super::samples::{EdgeDetail, Samples, THING, Traced};
+use super::samples::{EdgeDetail, OBJECT_BITS, Samples, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::{EDGE_ERROR, FARTHEST_CORNER, FINEST, SPREAD_OUT, TWISTED, UNEVEN};
+use super::thresholds::{EDGE_ERROR, FARTHEST_CORNER, MAX_TWIST, PIXEL_STEPS, SPREAD_OUT, UNEVEN};
 use super::tile::{Tile, TileColors};
 use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
 /// Side of the smallest cells, in steps of the finest grid, that are searched for thin things although their corners
 /// see different things: an edge is located better where it crosses larger cells.
-const SLIPPED: u16 = (FINEST / 4) as u16;
+const MIN_THIN_SIDE: u16 = (PIXEL_STEPS / 4) as u16;
 
 /// Side of the smallest cells, in steps of the finest grid, that are searched for a gap between things of any
 /// colours.
-const HIDING: u16 = (FINEST / 8) as u16;
+const MIN_GAP_SIDE: u16 = (PIXEL_STEPS / 8) as u16;
 
 /// The result of a sample.
 #[derive(Clone, Copy, Debug)]
@@ -32,12 +32,12 @@ pub struct CornerSample<R> {
 
 impl<R: Real> CornerSample<R> {
     #[inline(always)]
-    fn of(traced: &Traced<R>, index: usize) -> Self {
+    fn of(traced: &Traced<R>, i: usize) -> Self {
         let [red, green, blue] = traced.channels();
         Self {
-            values: [red[index], green[index], blue[index], traced.near[index]],
-            signature: traced.signature[index],
-            shadows: traced.shadows[index],
+            values: [red[i], green[i], blue[i], traced.thin_distance[i]],
+            signature: traced.signature[i],
+            shadows: traced.shadows[i],
         }
     }
 }
@@ -105,13 +105,13 @@ impl<R: Real> Limits<R> {
 
     /// Returns the side of the smallest cells, in steps of the finest grid.
     pub fn least_side(self) -> u16 {
-        (FINEST >> (self.depth + 1)) as u16
+        (PIXEL_STEPS >> (self.depth + 1)) as u16
     }
 
     /// Returns how many samples are taken in a pixel that is too crowded to be divided, and the step between them,
     /// see [`SPREAD_OUT`].
     pub fn spread_out(self) -> (usize, usize) {
-        let cells = FINEST / usize::from(self.least_side());
+        let cells = PIXEL_STEPS / usize::from(self.least_side());
         let mut lattices = SPREAD_OUT.iter();
         let lattice = lattices.find(|(side, _)| *side <= cells);
         lattice.map_or((1, 1), |(_, lattice)| *lattice)
@@ -157,14 +157,14 @@ impl<R: Real> Lattice<R> {
     #[inline(always)]
     pub fn add(&mut self, tile: &Tile, corners: &Traced<R>, pixels: &mut [Cell]) {
         for pixel in pixels {
-            let places = pixel.places();
-            for (corner, (x, y)) in pixel.corners.iter_mut().zip(places) {
-                *corner = self.want(x, y);
+            let corner_points = pixel.corner_points();
+            for (corner, (x, y)) in pixel.corners.iter_mut().zip(corner_points) {
+                *corner = self.request(x, y);
                 if *corner as usize == self.samples.len() {
-                    let (column, row) = (x as usize / FINEST, y as usize / FINEST);
-                    let number = row * (tile.width() + 1) + column;
-                    self.samples.push(CornerSample::of(corners, number));
-                    self.faces.extend(corners.faces.get(number));
+                    let (column, row) = (x as usize / PIXEL_STEPS, y as usize / PIXEL_STEPS);
+                    let index = row * (tile.width() + 1) + column;
+                    self.samples.push(CornerSample::of(corners, index));
+                    self.faces.extend(corners.faces.get(index));
                 }
             }
         }
@@ -172,15 +172,15 @@ impl<R: Real> Lattice<R> {
 
     /// Requests a sample at a point of the grid and returns its index.
     #[inline(always)]
-    pub fn want(&mut self, x: u16, y: u16) -> u32 {
-        self.points.number(x, y)
+    pub fn request(&mut self, x: u16, y: u16) -> u32 {
+        self.points.find_or_add(x, y)
     }
 
     /// Fills `samples` with the points that were requested and have no sample yet.
-    pub fn wanted_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
+    pub fn requested_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
         samples.clear();
-        let step = 1.0 / FINEST as f64;
-        for &[x, y] in self.points.from(self.samples.len()) {
+        let step = 1.0 / PIXEL_STEPS as f64;
+        for &[x, y] in self.points.starting_at(self.samples.len()) {
             samples.push(
                 R::from_f64(tile.columns.start as f64 + f64::from(x) * step),
                 R::from_f64(tile.rows.start as f64 + f64::from(y) * step),
@@ -215,7 +215,7 @@ impl<R: Real> Lattice<R> {
     /// Returns where a sample is on the finest grid.
     #[inline(always)]
     pub fn point(&self, index: usize) -> [u16; 2] {
-        self.points.from(index)[0]
+        self.points.starting_at(index)[0]
     }
 
     /// Returns how far the colour of a sample lies outside of the range between the colours at two points, summed
@@ -250,11 +250,11 @@ impl<R: Real> Lattice<R> {
 
     /// Returns whether something may have slipped between the corners of a cell.
     #[inline(always)]
-    pub fn is_near(&self, cell: &Cell) -> bool {
+    pub fn is_near_thin(&self, cell: &Cell) -> bool {
         let [a, b, c, d] = self.corners(cell);
         let (a, b, c, d) = (a.values[3], b.values[3], c.values[3], d.values[3]);
         let least = a.min(b).min(c.min(d));
-        cell.detail == EdgeDetail::Near && least < R::from_f64(FARTHEST_CORNER * cell.width())
+        cell.detail == EdgeDetail::Thin && least < R::from_f64(FARTHEST_CORNER * cell.width())
     }
 
     /// Returns what the corners of a cell tell about its inside.
@@ -264,20 +264,20 @@ impl<R: Real> Lattice<R> {
             return Inside::Known;
         }
         let [a, b, c, d] = self.corners(cell);
-        let differing =
+        let diff =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
-        let is_one = differing == 0;
-        if (is_one || SLIPPED <= cell.side) && self.is_near(cell) {
+        let is_one = diff == 0;
+        if (is_one || MIN_THIN_SIDE <= cell.side) && self.is_near_thin(cell) {
             return Inside::Anything;
         }
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
         if cell.may_hide_face
-            || (is_one && EdgeDetail::Bordered <= cell.detail && may_leave_gap(shadows))
+            || (is_one && EdgeDetail::Borders <= cell.detail && may_leave_gap(shadows))
         {
             return Inside::Anything;
         }
         let may_hide =
-            HIDING <= cell.side && (differing & THING != 0 || !is_one && cell.swaps_lights);
+            MIN_GAP_SIDE <= cell.side && (diff & OBJECT_BITS != 0 || !is_one && cell.swaps_lights);
         let has_contrast = self.has_contrast(cell, (limits, is_one));
         match (has_contrast || may_hide, is_one) {
             (false, _) => Inside::Known,
@@ -305,9 +305,9 @@ impl<R: Real> Lattice<R> {
     /// Returns whether the corners of a cell see different things, or colours that differ by more than allowed.
     pub fn differs(&self, cell: &Cell, limits: Limits<R>) -> bool {
         let [a, b, c, d] = self.corners(cell);
-        let differing =
+        let diff =
             (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
-        differing & THING != 0 || self.has_contrast(cell, (limits, differing == 0))
+        diff & OBJECT_BITS != 0 || self.has_contrast(cell, (limits, diff == 0))
     }
 
     /// Returns whether light of two lights or of neither may be hidden between the corners of a pixel. Unknown for
@@ -316,13 +316,13 @@ impl<R: Real> Lattice<R> {
     pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
         let [a, b, c, d] = self.corners(pixel);
         let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        EdgeDetail::Bordered <= pixel.detail && shadows != [0; 4] && may_swap_lights(shadows)
+        EdgeDetail::Borders <= pixel.detail && shadows != [0; 4] && may_swap_lights(shadows)
     }
 
     /// Requests a sample in the middle of a cell and returns its index.
-    pub fn want_middle(&mut self, cell: &Cell) -> u32 {
+    pub fn request_middle(&mut self, cell: &Cell) -> u32 {
         let half = cell.side / 2;
-        self.want(cell.x + half, cell.y + half)
+        self.request(cell.x + half, cell.y + half)
     }
 
     /// Adds the colour of a cell whose corners see the same to its pixel, if the colour changes evenly: the middle
@@ -352,7 +352,7 @@ impl<R: Real> Lattice<R> {
         let limit = limits.contrast_of_same(cell.width());
         let is_even = middle.signature == a.signature
             && off <= limit.min(contrast * R::from_f64(UNEVEN))
-            && twist <= contrast * R::from_f64(TWISTED);
+            && twist <= contrast * R::from_f64(MAX_TWIST);
         if is_even {
             cell.add_color(means, colors);
         }
@@ -381,11 +381,11 @@ impl<R: Real> Lattice<R> {
         let (middle, centre) = (left + half, top + half);
         let (right, bottom) = (middle + half, centre + half);
         let [a, b, c, d] = cell.corners;
-        let above = self.want(middle, top);
-        let before = self.want(left, centre);
-        let inside = self.want(middle, centre);
-        let behind = self.want(right, centre);
-        let below = self.want(middle, bottom);
+        let above = self.request(middle, top);
+        let before = self.request(left, centre);
+        let inside = self.request(middle, centre);
+        let behind = self.request(right, centre);
+        let below = self.request(middle, bottom);
         let quarter = |x: u16, y: u16, corners: [u32; 4]| Cell {
             x,
             y,
@@ -416,11 +416,11 @@ mod tests {
         };
         let traced = |levels: &[f64]| {
             let mut traced = Traced::default();
-            traced.resize(levels.len(), levels.len(), EdgeDetail::Signed);
+            traced.resize(levels.len(), levels.len(), EdgeDetail::Signatures);
             traced.red.copy_from_slice(levels);
             traced.green.fill(0.0);
             traced.blue.fill(0.0);
-            traced.near.fill(f64::INFINITY);
+            traced.thin_distance.fill(f64::INFINITY);
             traced.signature.fill(5);
             traced
         };
@@ -431,7 +431,7 @@ mod tests {
         let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0, false)]);
         lattice.add(&tile, &traced(&corners), &mut pixel);
         let [pixel] = pixel;
-        let at = lattice.want_middle(&pixel);
+        let at = lattice.request_middle(&pixel);
         lattice.take_results(&traced(&[middle]));
         let mut colors = TileColors::default();
         colors.clear(1, 1);

@@ -72,12 +72,12 @@ impl EdgeMessages {
     }
 
     /// Returns whether a row is among these.
-    pub fn has(&self, row: usize) -> bool {
+    pub fn has_row(&self, row: usize) -> bool {
         self.rows.contains(&row)
     }
 
     /// The sides from which the pixels in these columns of a row can learn nothing more.
-    pub fn row(&self, row: usize, columns: &Range<usize>) -> &[AtomicU8] {
+    pub fn known_sides(&self, row: usize, columns: &Range<usize>) -> &[AtomicU8] {
         let first = (row - self.rows.start) * self.width;
         &self.known[first + columns.start..first + columns.end]
     }
@@ -97,7 +97,7 @@ impl EdgeMessages {
             .unwrap_or_else(PoisonError::into_inner);
         let mut waiting = take(waiting);
         waiting.retain(|&([row, column], side)| {
-            let known = self.row(row, &(column..column + 1))[0].load(Ordering::Relaxed);
+            let known = self.known_sides(row, &(column..column + 1))[0].load(Ordering::Relaxed);
             known & side == 0
         });
         waiting.into_iter().map(|(pixel, _)| pixel).collect()
@@ -120,11 +120,11 @@ mod tests {
             messages.send(pixel, side);
         }
         let know = |row: usize, column: usize, sides: u8| {
-            messages.row(row, &(column..column + 1))[0].store(sides, Ordering::Relaxed);
+            messages.known_sides(row, &(column..column + 1))[0].store(sides, Ordering::Relaxed);
         };
         know(5, 1, LEFT);
         know(6, 2, LEFT | RIGHT);
-        assert!(messages.has(6) && !messages.has(7) && !messages.has(4));
+        assert!(messages.has_row(6) && !messages.has_row(7) && !messages.has_row(4));
         let received: Vec<[usize; 2]> = messages.received().into_iter().collect();
         assert_eq!(received, [[5, 0], [6, 2]]);
         assert!(messages.received().is_empty());

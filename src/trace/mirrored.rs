@@ -21,7 +21,7 @@ impl<L: SimdFloat> Mirrored<L> {
     /// Merges these and the rays of other mirrors into one packet.
     #[inline(always)]
     #[must_use]
-    pub fn joined(self, before: Option<Self>) -> Self {
+    pub fn merged_with(self, before: Option<Self>) -> Self {
         let Some(before) = before else { return self };
         let new = self;
         let is_new = new.active;
@@ -30,7 +30,7 @@ impl<L: SimdFloat> Mirrored<L> {
             origin: Vec3::select(is_new, ours.rays.origin, theirs.rays.origin),
             direction: Vec3::select(is_new, ours.rays.direction, theirs.rays.direction),
         };
-        let ignored = ours.ignored.over(is_new, theirs.ignored);
+        let ignored = ours.ignored.select(is_new, theirs.ignored);
         Self {
             active: before.active | is_new,
             filter: Vec3::select(is_new, new.filter, before.filter),

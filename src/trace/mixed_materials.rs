@@ -57,8 +57,8 @@ impl<L: SimdFloat> MixedMaterials<L> {
     }
 
     /// Adds a material, and the hits on it.
-    pub fn add(&mut self, here: L::Mask, material: u32) {
-        self.materials.push((here, material));
+    pub fn add(&mut self, lanes: L::Mask, material: u32) {
+        self.materials.push((lanes, material));
     }
 
     /// Returns whether there is more than one material.
@@ -66,13 +66,13 @@ impl<L: SimdFloat> MixedMaterials<L> {
         self.materials.len() > 1
     }
 
-    /// Sets `color` to the colours that the materials have without light, or to `instead` if given. Returns which
+    /// Sets `color` to the colours that the materials have without light, or to `stand_in` if given. Returns which
     /// hits respond to light; `None` if none does.
     #[inline(never)]
     pub fn set_base(
         &mut self,
         materials: &[Material<L::Real>],
-        instead: Option<Vec3<L>>,
+        stand_in: Option<Vec3<L>>,
         color: &mut Vec3<L>,
     ) -> Option<L::Mask> {
         L::vectorize(
@@ -81,23 +81,23 @@ impl<L: SimdFloat> MixedMaterials<L> {
             || {
                 let mut lit: Option<L::Mask> = None;
                 let mut shiny = color.x.less(color.x);
-                for &(here, material) in &self.materials {
+                for &(lanes, material) in &self.materials {
                     let Material { base, surface } = &materials[material as usize];
-                    let base = instead.unwrap_or(color.like(*base));
-                    *color = Vec3::select(here, base, *color);
+                    let base = stand_in.unwrap_or(color.like(*base));
+                    *color = Vec3::select(lanes, base, *color);
                     let Some(surface) = surface else { continue };
                     lit = match lit {
-                        Some(lit) => Some(lit | here),
-                        None => Some(here),
+                        Some(lit) => Some(lit | lanes),
+                        None => Some(lanes),
                     };
                     let Some(exponent) = surface.exponent else {
                         continue;
                     };
-                    shiny = shiny | here;
+                    shiny = shiny | lanes;
                     let mut known = self.exponents.iter_mut();
                     match known.find(|(_, other)| *other == exponent) {
-                        Some((others, _)) => *others = *others | here,
-                        None => self.exponents.push((here, exponent)),
+                        Some((known_lanes, _)) => *known_lanes = *known_lanes | lanes,
+                        None => self.exponents.push((lanes, exponent)),
                     }
                 }
                 self.shiny = Some(shiny);
@@ -111,9 +111,9 @@ impl<L: SimdFloat> MixedMaterials<L> {
         plan: &'a Plan<L::Real>,
     ) -> impl Iterator<Item = (L::Mask, &'a Surface<L::Real>)> {
         let materials = self.materials.iter();
-        materials.filter_map(|(here, material)| {
+        materials.filter_map(|(lanes, material)| {
             let surface = plan.materials[*material as usize].surface.as_ref()?;
-            Some((*here, surface))
+            Some((*lanes, surface))
         })
     }
 
@@ -124,9 +124,9 @@ impl<L: SimdFloat> MixedMaterials<L> {
             color.x.token(),
             #[inline(always)]
             || {
-                for (here, surface) in self.surfaces(plan) {
+                for (lanes, surface) in self.surfaces(plan) {
                     let light = arriving.color(surface, plan.show);
-                    *color = Vec3::select(here, *color + light, *color);
+                    *color = Vec3::select(lanes, *color + light, *color);
                 }
             },
         );
@@ -140,14 +140,16 @@ impl<L: SimdFloat> MixedMaterials<L> {
             #[inline(always)]
             || {
                 let mut mirrors: Option<(L::Mask, Vec3<L>)> = None;
-                for (here, surface) in self.surfaces(plan) {
+                for (lanes, surface) in self.surfaces(plan) {
                     let Some(filter) = surface.mirror else {
                         continue;
                     };
                     let filter = Vec3::splat(like).like(filter);
                     mirrors = Some(match mirrors {
-                        None => (here, filter),
-                        Some((others, other)) => (here | others, Vec3::select(here, filter, other)),
+                        None => (lanes, filter),
+                        Some((known_lanes, other)) => {
+                            (lanes | known_lanes, Vec3::select(lanes, filter, other))
+                        }
                     });
                 }
                 mirrors
@@ -163,8 +165,8 @@ impl<L: SimdFloat> MixedMaterials<L> {
             #[inline(always)]
             || {
                 let mut brightness = like;
-                for (here, surface) in self.surfaces(plan) {
-                    brightness = L::select(here, like.like(surface.brightness()), brightness);
+                for (lanes, surface) in self.surfaces(plan) {
+                    brightness = L::select(lanes, like.like(surface.brightness()), brightness);
                 }
                 brightness
             },
@@ -181,8 +183,8 @@ impl<L: SimdFloat> MixedMaterials<L> {
             || {
                 let zero = cosine.like(L::Real::ZERO);
                 let mut gloss = zero;
-                for (here, surface) in self.surfaces(plan) {
-                    gloss = L::select(here, zero.like(surface.gloss()), gloss);
+                for (lanes, surface) in self.surfaces(plan) {
+                    gloss = L::select(lanes, zero.like(surface.gloss()), gloss);
                 }
                 cosine * self.brightness(plan, zero) + self.highlight(normal, half) * gloss
             },
@@ -197,9 +199,9 @@ impl<L: SimdFloat> MixedMaterials<L> {
             #[inline(always)]
             || {
                 let mut highlights = normal.x.like(L::Real::ZERO);
-                for (here, exponent) in &self.exponents {
+                for (lanes, exponent) in &self.exponents {
                     let highlight = exponent.highlight(normal, half);
-                    highlights = L::select(*here, highlight, highlights);
+                    highlights = L::select(*lanes, highlight, highlights);
                 }
                 highlights
             },
@@ -215,10 +217,10 @@ impl<L: SimdFloat> MixedMaterials<L> {
             #[inline(always)]
             || {
                 let mut distance = off.like(L::Real::INFINITY);
-                for (here, exponent) in &self.exponents {
+                for (lanes, exponent) in &self.exponents {
                     if let Some(size) = exponent.size() {
                         let near = footprint.highlight_distance(size, off, light_distance);
-                        distance = L::select(*here, near, distance);
+                        distance = L::select(*lanes, near, distance);
                     }
                 }
                 distance

@@ -5,7 +5,7 @@ use super::beam::Bounds;
 use super::doubt::Uncertainty;
 use super::intersect::{Kernel, Nearest};
 use super::packet::Packet;
-use super::paths::NOTHING;
+use super::paths::NO_PRIMITIVE;
 use super::samples::Samples;
 use crate::primitive::{BoundingBox, Ray};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
@@ -13,25 +13,25 @@ use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 /// Cells along each axis of the box around all hits.
 const CELLS: f64 = 16.0;
 /// Bits of a key: four per axis, and two for the kind of hit.
-const BITS: u32 = 14;
+const KEY_BITS: u32 = 14;
 /// Number of keys that a pass of sorting tells apart.
-const BUCKETS: usize = 1 << (BITS / 2);
+const BUCKETS: usize = 1 << (KEY_BITS / 2);
 
 /// The bits of each cell number along an axis, moved three apart.
-const SPREAD: [u16; CELLS as usize] = {
-    let mut spread = [0; CELLS as usize];
+const MORTON_BITS: [u16; CELLS as usize] = {
+    let mut morton = [0; CELLS as usize];
     let mut cell = 0;
-    while cell < spread.len() {
+    while cell < morton.len() {
         let bits = cell as u16;
-        spread[cell] = bits & 1 | (bits & 2) << 2 | (bits & 4) << 4 | (bits & 8) << 6;
+        morton[cell] = bits & 1 | (bits & 2) << 2 | (bits & 4) << 4 | (bits & 8) << 6;
         cell += 1;
     }
-    spread
+    morton
 };
 
 /// Hits count as scattered if their distances within a packet differ, on average, by more than this share of the
 /// range in the whole tile; on a surface it is a quarter.
-const SCATTERED: f64 = 0.4;
+const SCATTERED_SHARE: f64 = 0.4;
 
 /// The hits of each sample, and the order of the samples. The memory is reused.
 #[derive(Debug, Default)]
@@ -48,7 +48,7 @@ pub struct Order<R> {
     /// For each lane of the sorted packets, the index of its sample; empty if packets are in the order of the
     /// samples.
     pub samples: Vec<u32>,
-    other: Vec<u32>,
+    scratch: Vec<u32>,
 }
 
 impl<R: Real> Order<R> {
@@ -63,7 +63,7 @@ impl<R: Real> Order<R> {
 
     /// Regroups the hits of camera rays into packets whose hits are close together, if they are scattered.
     #[inline(always)]
-    pub fn arrange<L: SimdFloat<Real = R>, const TREE: bool>(
+    pub fn regroup_hits<L: SimdFloat<Real = R>, const TREE: bool>(
         &mut self,
         kernel: Kernel<L, TREE>,
         (packets, uncertainties): (&mut [Packet<L>], &mut [Uncertainty<L>]),
@@ -75,15 +75,19 @@ impl<R: Real> Order<R> {
         if !is_scattered(kernel, packets) {
             return;
         }
-        let around = bounds_of(kernel, packets).around();
+        let bounding_box = bounds_of(kernel, packets).bounding_box();
         let (zero, one) = (kernel.splat(0.0), kernel.splat(1.0));
-        for Packet { rays, near, .. } in &*packets {
-            self.add((near.t, near.number), rays.at(near.t), &around);
+        for Packet { rays, nearest, .. } in &*packets {
+            self.add(
+                (nearest.t, nearest.number),
+                rays.at(nearest.t),
+                &bounding_box,
+            );
         }
         for Uncertainty { doubt, .. } in &*uncertainties {
             push(&mut self.doubt, L::select(*doubt, one, zero));
         }
-        self.find(samples.count, first);
+        self.compute_order(samples.count, first);
         let count = kernel.splat(samples.count as f64);
         for (index, packet) in packets.iter_mut().enumerate() {
             let first = index * L::WIDTH;
@@ -91,7 +95,7 @@ impl<R: Real> Order<R> {
             let y = self.gather(kernel.token, &samples.y, first);
             let (origin, direction) = kernel.plan.view.rays(x, y);
             packet.rays = Ray { origin, direction };
-            packet.near = Nearest {
+            packet.nearest = Nearest {
                 t: self.gather(kernel.token, &self.t, first),
                 number: self.gather(kernel.token, &self.number, first),
             };
@@ -103,15 +107,15 @@ impl<R: Real> Order<R> {
         }
     }
 
-    /// Adds the hits of a packet; `around` is the box around all hits.
+    /// Adds the hits of a packet; `bounding_box` is the box around all hits.
     #[inline(always)]
     fn add<L: SimdFloat<Real = R>>(
         &mut self,
         (t, number): (L, L),
         point: Vec3<L>,
-        around: &BoundingBox<R>,
+        bounding_box: &BoundingBox<R>,
     ) {
-        let size = around.high - around.low;
+        let size = bounding_box.high - bounding_box.low;
         let longest = size.x.max(size.y).max(size.z);
         let zero = t.like(R::ZERO);
         let last = t.like_f64(CELLS - 1.0);
@@ -120,7 +124,7 @@ impl<R: Real> Order<R> {
         } else {
             R::ZERO
         };
-        let off = point - point.like(around.low);
+        let off = point - point.like(bounding_box.low);
         for (cells, off) in self.cells.iter_mut().zip([off.x, off.y, off.z]) {
             push(cells, (off * t.like(per_cell)).max(zero).min(last));
         }
@@ -132,16 +136,17 @@ impl<R: Real> Order<R> {
     /// together; then hits in the tree, whose first number is given, cell by cell along a space-filling curve
     /// (Morton, "A computer oriented geodetic data base and a new technique in file sequencing", IBM, 1966); then
     /// misses.
-    fn find(&mut self, count: usize, first: usize) {
+    fn compute_order(&mut self, count: usize, first: usize) {
         self.keys.clear();
         let first = R::from_f64(first as f64);
         for sample in 0..self.number.len() {
             let [x, y, z] = &self.cells;
-            let bits = |cells: &[R]| SPREAD[cells[sample].nearest() as usize % SPREAD.len()];
+            let bits =
+                |cells: &[R]| MORTON_BITS[cells[sample].nearest() as usize % MORTON_BITS.len()];
             let (x, y, z) = (bits(x), bits(y), bits(z));
             let number = self.number[sample];
             let group = match number {
-                _ if sample >= count || number == R::from_f64(NOTHING) => 2,
+                _ if sample >= count || number == R::from_f64(NO_PRIMITIVE) => 2,
                 number if number < first => 0,
                 _ => 1,
             };
@@ -151,7 +156,7 @@ impl<R: Real> Order<R> {
         self.samples.clear();
         self.samples.extend(all);
         for pass in 0..2 {
-            self.sort_by_half(pass * (BITS / 2));
+            self.sort_by_half(pass * (KEY_BITS / 2));
         }
     }
 
@@ -165,14 +170,14 @@ impl<R: Real> Order<R> {
         for index in 0..BUCKETS {
             starts[index + 1] += starts[index];
         }
-        self.other.clear();
-        self.other.resize(self.samples.len(), 0);
+        self.scratch.clear();
+        self.scratch.resize(self.samples.len(), 0);
         for &sample in &self.samples {
             let start = &mut starts[bucket(self.keys[sample as usize])];
-            self.other[*start as usize] = sample;
+            self.scratch[*start as usize] = sample;
             *start += 1;
         }
-        std::mem::swap(&mut self.samples, &mut self.other);
+        std::mem::swap(&mut self.samples, &mut self.scratch);
     }
 
     /// Returns the sample indices of the lanes of a packet that begins at `first`.
@@ -204,11 +209,14 @@ fn bounds_of<L: SimdFloat, const TREE: bool>(
 ) -> Bounds<L> {
     let mut bounds = Bounds::new(kernel.token);
     for Packet {
-        rays, near, active, ..
+        rays,
+        nearest,
+        active,
+        ..
     } in packets
     {
-        let hit = near.t.less(kernel.infinity()) & *active;
-        bounds.add(hit, rays.at(near.t));
+        let hit = nearest.t.less(kernel.infinity()) & *active;
+        bounds.add(hit, rays.at(nearest.t));
     }
     bounds
 }
@@ -220,21 +228,24 @@ fn is_scattered<L: SimdFloat, const TREE: bool>(
     packets: &[Packet<L>],
 ) -> bool {
     let (infinity, zero) = (kernel.infinity(), kernel.splat(0.0));
-    let (mut nearest, mut farthest) = (infinity, zero);
+    let (mut closest, mut farthest) = (infinity, zero);
     let (mut sum, mut count) = (L::Real::ZERO, L::Real::ZERO);
-    for Packet { near, active, .. } in packets {
-        let hit = near.t.less(infinity) & *active;
+    for Packet {
+        nearest, active, ..
+    } in packets
+    {
+        let hit = nearest.t.less(infinity) & *active;
         if hit.any() {
-            let near_end = L::select(hit, near.t, infinity);
-            let far_end = L::select(hit, near.t, zero);
+            let near_end = L::select(hit, nearest.t, infinity);
+            let far_end = L::select(hit, nearest.t, zero);
             sum = sum + (far_end.greatest() - near_end.least());
             count = count + L::Real::ONE;
-            nearest = nearest.min(near_end);
+            closest = closest.min(near_end);
             farthest = farthest.max(far_end);
         }
     }
-    let range = farthest.greatest() - nearest.least();
-    range * count * L::Real::from_f64(SCATTERED) < sum
+    let range = farthest.greatest() - closest.least();
+    range * count * L::Real::from_f64(SCATTERED_SHARE) < sum
 }
 
 #[inline(always)]
@@ -251,7 +262,7 @@ mod tests {
     #[test]
     fn hits_are_sorted_by_what_they_are_and_where() {
         let mut order = Order::<f64>::default();
-        let around = BoundingBox {
+        let bounding_box = BoundingBox {
             low: Vec3::splat(0.0),
             high: Vec3::new(16.0, 16.0, 4.0),
         };
@@ -265,12 +276,12 @@ mod tests {
             (2.0, 9.0),
         ];
         for (number, x) in hits {
-            order.add((1.0, number), Vec3::new(x, 1.0, 1.0), &around);
+            order.add((1.0, number), Vec3::new(x, 1.0, 1.0), &bounding_box);
         }
-        order.find(hits.len(), 5);
+        order.compute_order(hits.len(), 5);
         assert_eq!(order.samples, [5, 2, 4, 1, 3, 0]);
         // The padding of the last packet counts as misses.
-        order.find(4, 5);
+        order.compute_order(4, 5);
         assert_eq!(order.samples, [2, 1, 3, 4, 0, 5]);
     }
 }

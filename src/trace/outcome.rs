@@ -1,8 +1,8 @@
 //! The results of packets, sample by sample.
 
 use super::packet::{EdgeInfo, Packet};
-use super::paths::NOTHING;
-use super::samples::{THING, Traced};
+use super::paths::NO_PRIMITIVE;
+use super::samples::{OBJECT_BITS, Traced};
 use super::shadows::joined as joined_shadows;
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
@@ -16,7 +16,7 @@ pub fn signatures_of<L: SimdFloat>(
 ) -> [u32; MAX_LANES] {
     let mut numbers = [L::Real::ZERO; MAX_LANES];
     let mut lit = numbers;
-    packet.near.number.store(&mut numbers);
+    packet.nearest.number.store(&mut numbers);
     edge.lit.store(&mut lit);
     let mut signatures = [0; MAX_LANES];
     // Separate loops: without calls, all lanes are computed in step.
@@ -27,7 +27,7 @@ pub fn signatures_of<L: SimdFloat>(
         }
     } else {
         // Neighbouring rays often hit the same primitive.
-        let (mut last, mut object) = (L::Real::from_f64(NOTHING), 0);
+        let (mut last, mut object) = (L::Real::from_f64(NO_PRIMITIVE), 0);
         for lane in 0..L::WIDTH {
             if numbers[lane] != last {
                 (last, object) = (numbers[lane], object_of(plan, numbers[lane]));
@@ -43,20 +43,20 @@ pub fn signatures_of<L: SimdFloat>(
 fn signature_of<R: Real>(object: u32, lit: R) -> u32 {
     let object = object.wrapping_mul(0x9E37_79B1);
     let mixed = object ^ lit.nearest().wrapping_mul(0x85EB_CA6B);
-    object & THING | folded(mixed)
+    object & OBJECT_BITS | fold_to_detail_bits(mixed)
 }
 
 /// Combines a signature with that of what is seen in the mirror. The bits of the thing stay those of the mirror
 /// itself, since in curved mirrors each pixel shows another thing.
 #[inline(always)]
-pub fn joined(own: u32, mirrored: u32) -> u32 {
-    own & THING | folded(own.rotate_left(11) ^ mirrored)
+pub fn join_signatures(own: u32, mirrored: u32) -> u32 {
+    own & OBJECT_BITS | fold_to_detail_bits(own.rotate_left(11) ^ mirrored)
 }
 
 /// Folds all bits of a number into those that do not identify things.
 #[inline(always)]
-fn folded(mixed: u32) -> u32 {
-    (mixed ^ mixed >> 16) & !THING
+fn fold_to_detail_bits(mixed: u32) -> u32 {
+    (mixed ^ mixed >> 16) & !OBJECT_BITS
 }
 
 /// Returns a number that identifies the object of a primitive: connected faces of a mesh count as one thing.
@@ -64,20 +64,20 @@ fn folded(mixed: u32) -> u32 {
 fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
     // The numbers of faces may be too large for `nearest`.
     let number = ((number.to_f64() + 1.0) as usize).checked_sub(1);
-    number.map_or(0, |number| thing_of(plan, number) as u32 + 1)
+    number.map_or(0, |number| component_of(plan, number) as u32 + 1)
 }
 
 /// Returns the number of the first primitive of the thing that a primitive belongs to. Not inlined: in the kernels,
 /// it would slow down the clean edges of the demo, which does not need it, by a tenth.
 #[inline(never)]
-fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
+fn component_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
         let index = number.checked_sub(first)?;
-        let thing = match geometry.mesh_of(index) {
+        let component = match geometry.mesh_of(index) {
             Some(mesh) => mesh.first + mesh.mesh.thing_of(index - mesh.first),
             None => geometry.primitives.thing_of(index),
         };
-        Some(first + thing)
+        Some(first + component)
     });
     in_tree.unwrap_or_else(|| plan.primitives.thing_of(number))
 }
@@ -87,10 +87,10 @@ fn thing_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
 fn shadows_of<L: SimdFloat>(edge: &EdgeInfo<L>, shadows: &mut [u32]) {
     shadows.fill(0);
     let (direct, mirrored) = (edge.shadows, edge.mirrored_shadows);
-    let mut left = direct.like(L::Real::ZERO).less(direct + mirrored).bits();
-    while left != 0 {
-        let lane = left.trailing_zeros() as usize;
-        left &= left - 1;
+    let mut remaining = direct.like(L::Real::ZERO).less(direct + mirrored).bits();
+    while remaining != 0 {
+        let lane = remaining.trailing_zeros() as usize;
+        remaining &= remaining - 1;
         shadows[lane] = joined_shadows(direct.lane(lane).nearest(), mirrored.lane(lane).nearest());
     }
 }
@@ -112,7 +112,7 @@ pub fn store<L: SimdFloat>(
     }
     for (index, (edge, signatures)) in edges.iter().zip(signatures).enumerate() {
         let first = index * L::WIDTH;
-        edge.near.store(&mut traced.near[first..]);
+        edge.thin_distance.store(&mut traced.thin_distance[first..]);
         let lanes = first..first + L::WIDTH;
         traced.signature[lanes.clone()].copy_from_slice(&signatures[..L::WIDTH]);
         shadows_of(edge, &mut traced.shadows[lanes]);

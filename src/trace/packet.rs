@@ -3,7 +3,7 @@
 use super::doubt::Uncertainty;
 use super::footprint::RayCone;
 use super::intersect::{Kernel, Nearest};
-use super::paths::{IgnoredPrimitive, NOTHING};
+use super::paths::{IgnoredPrimitive, NO_PRIMITIVE};
 use crate::primitive::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
@@ -15,7 +15,7 @@ pub struct Packet<L: SimdFloat> {
     /// Where there is a ray.
     pub active: L::Mask,
     /// What they hit first.
-    pub near: Nearest<L>,
+    pub nearest: Nearest<L>,
     /// Linear colours, 0–1.
     pub color: Vec3<L>,
 }
@@ -39,7 +39,7 @@ pub struct EdgeInfo<L> {
     /// The sum of [`super::shadows::light_bit`] over the lights that shine on what was hit.
     pub lit: L,
     /// How many pixels away the nearest thing is that may slip between samples; infinity for none.
-    pub near: L,
+    pub thin_distance: L,
     /// The shadows that the hit is in and that end near it, see [`super::shadows`].
     pub shadows: L,
     /// The same for what is seen in the mirror that was hit.
@@ -53,9 +53,9 @@ impl<L: SimdFloat> Packet<L> {
         Self {
             rays,
             active,
-            near: Nearest {
+            nearest: Nearest {
                 t: kernel.infinity(),
-                number: kernel.splat(NOTHING),
+                number: kernel.splat(NO_PRIMITIVE),
             },
             color: Vec3::broadcast(kernel.token, kernel.plan.background),
         }
@@ -69,7 +69,7 @@ impl<L: SimdFloat> EdgeInfo<L> {
         Self {
             cone,
             lit: cone.width.like(L::Real::ZERO),
-            near: cone.width.like(L::Real::INFINITY),
+            thin_distance: cone.width.like(L::Real::INFINITY),
             shadows: cone.width.like(L::Real::ZERO),
             mirrored_shadows: cone.width.like(L::Real::ZERO),
         }
@@ -82,18 +82,18 @@ pub fn list_doubtful<L: SimdFloat>(
     (packets, uncertainties): (&[Packet<L>], &[Uncertainty<L>]),
     order: &[u32],
     count: usize,
-    places: &mut Vec<u32>,
+    indices: &mut Vec<u32>,
 ) {
-    places.clear();
-    for (index, (packet, own)) in packets.iter().zip(uncertainties).enumerate() {
+    indices.clear();
+    for (index, (packet, uncertainty)) in packets.iter().zip(uncertainties).enumerate() {
         let first = index * L::WIDTH;
-        let mut left = own.doubt.bits() & packet.active.bits();
-        while left != 0 {
-            let place = first + left.trailing_zeros() as usize;
-            places.push(order.get(place).map_or(place as u32, |&sample| sample));
-            left &= left - 1;
+        let mut remaining = uncertainty.doubt.bits() & packet.active.bits();
+        while remaining != 0 {
+            let ray = first + remaining.trailing_zeros() as usize;
+            indices.push(order.get(ray).map_or(ray as u32, |&sample| sample));
+            remaining &= remaining - 1;
         }
     }
-    places.retain(|&place| (place as usize) < count);
-    places.sort_unstable();
+    indices.retain(|&index| (index as usize) < count);
+    indices.sort_unstable();
 }

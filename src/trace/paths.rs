@@ -16,7 +16,7 @@ pub struct Paths<L> {
 /// The primitives that rays start on.
 #[derive(Clone, Copy, Debug)]
 pub struct IgnoredPrimitive<L> {
-    /// The number in each lane; [`NOTHING`] for none.
+    /// The number in each lane; [`NO_PRIMITIVE`] for none.
     numbers: L,
     /// The number of the listed primitive that all of them may start on, [`UNLISTED`] if none starts on one; `None`
     /// where they differ.
@@ -27,7 +27,7 @@ pub struct IgnoredPrimitive<L> {
 const UNLISTED: usize = usize::MAX;
 
 /// The number that stands for no primitive.
-pub const NOTHING: f64 = -1.0;
+pub const NO_PRIMITIVE: f64 = -1.0;
 
 /// Converts the number of a primitive to the kernels' real type.
 #[inline(always)]
@@ -39,7 +39,7 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
     /// No primitive for any ray.
     #[inline(always)]
     pub fn nothing(token: L::Token) -> Self {
-        Self::in_tree(L::splat(token, L::Real::from_f64(NOTHING)))
+        Self::in_tree(L::splat(token, L::Real::from_f64(NO_PRIMITIVE)))
     }
 
     /// The same listed primitive for all rays that count: `numbers` has its number in their lanes.
@@ -57,20 +57,24 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
         Self::listed(UNLISTED, numbers)
     }
 
-    /// Returns `self` if `is_so`, else no primitive. Field by field: as a whole it would be copied with the padding
+    /// Returns `self` if `is_needed`, else no primitive. Field by field: as a whole it would be copied with the padding
     /// between its fields, and the processor would stall on that.
     #[inline(always)]
-    pub fn only_if(self, is_so: bool) -> Self {
+    pub fn only_if(self, is_needed: bool) -> Self {
         let none = Self::nothing(self.numbers.token());
         Self {
-            numbers: if is_so { self.numbers } else { none.numbers },
-            listed: if is_so { self.listed } else { none.listed },
+            numbers: if is_needed {
+                self.numbers
+            } else {
+                none.numbers
+            },
+            listed: if is_needed { self.listed } else { none.listed },
         }
     }
 
     /// Returns `self` where the mask is set, `other` elsewhere.
     #[inline(always)]
-    pub fn over(self, mask: L::Mask, other: Self) -> Self {
+    pub fn select(self, mask: L::Mask, other: Self) -> Self {
         Self {
             numbers: L::select(mask, self.numbers, other.numbers),
             listed: self.listed.filter(|_| self.listed == other.listed),
@@ -79,7 +83,7 @@ impl<L: SimdFloat> IgnoredPrimitive<L> {
 
     /// Returns where the rays start on the primitive with this number.
     #[inline(always)]
-    pub fn is(self, number: usize) -> L::Mask {
+    pub fn starts_on(self, number: usize) -> L::Mask {
         self.numbers.same(self.numbers.like(real(number)))
     }
 
@@ -111,9 +115,9 @@ impl<L: SimdFloat> Paths<L> {
             };
         }
         let t = primitive.intersect(rays, prepared, methods);
-        let own = self.ignored.is(number);
-        if !P::IS_CURVED || own.any() {
-            L::select(own, primitive.exit(rays), t)
+        let starts_here = self.ignored.starts_on(number);
+        if !P::IS_CURVED || starts_here.any() {
+            L::select(starts_here, primitive.exit(rays), t)
         } else {
             t
         }

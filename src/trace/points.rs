@@ -8,7 +8,7 @@ const LEAST_SLOTS: u32 = 1 << 9;
 #[derive(Debug)]
 pub struct PointTable {
     /// Column and row of each point, in the order of their numbers.
-    places: Vec<[u16; 2]>,
+    points: Vec<[u16; 2]>,
     /// A point in the upper half, 1 + its number in the lower half; 0 for an empty slot. The length is a power of
     /// two.
     slots: Vec<u64>,
@@ -18,34 +18,34 @@ impl PointTable {
     /// Creates an empty table.
     pub fn new() -> Self {
         Self {
-            places: Vec::new(),
+            points: Vec::new(),
             slots: vec![0; LEAST_SLOTS as usize],
         }
     }
 
     /// Removes all points.
     pub fn clear(&mut self) {
-        self.places.clear();
+        self.points.clear();
         self.slots.fill(0);
     }
 
     /// The points with this number and later ones.
-    pub fn from(&self, number: usize) -> &[[u16; 2]] {
-        &self.places[number..]
+    pub fn starting_at(&self, number: usize) -> &[[u16; 2]] {
+        &self.points[number..]
     }
 
     /// Returns the number of a point, which becomes the next one if it has none yet.
     #[inline(always)]
-    pub fn number(&mut self, x: u16, y: u16) -> u32 {
+    pub fn find_or_add(&mut self, x: u16, y: u16) -> u32 {
         let key = u64::from(x) << 16 | u64::from(y);
         let slot = self.slot(key);
         if self.slots[slot] != 0 {
             return self.slots[slot] as u32 - 1;
         }
-        let number = self.places.len() as u32;
-        self.places.push([x, y]);
+        let number = self.points.len() as u32;
+        self.points.push([x, y]);
         self.slots[slot] = key << 32 | u64::from(number + 1);
-        if self.places.len() * 2 > self.slots.len() {
+        if self.points.len() * 2 > self.slots.len() {
             self.grow();
         }
         number
@@ -93,15 +93,18 @@ mod tests {
         for _ in 0..2 {
             for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x * 32, y * 32))) {
                 let number = u32::from(y / 32 * 90 + x / 32);
-                assert_eq!(points.number(x, y), number);
+                assert_eq!(points.find_or_add(x, y), number);
             }
         }
-        assert_eq!(points.from(6298), [[88 * 32, 69 * 32], [89 * 32, 69 * 32]]);
+        assert_eq!(
+            points.starting_at(6298),
+            [[88 * 32, 69 * 32], [89 * 32, 69 * 32]]
+        );
         assert_eq!(points.find(89 * 32, 69 * 32), Some(6299));
         assert_eq!(points.find(89 * 32, 70 * 32), None);
         points.clear();
-        assert_eq!(points.number(5, 7), 0);
-        assert_eq!(points.number(7, 5), 1);
-        assert_eq!(points.number(5, 7), 0);
+        assert_eq!(points.find_or_add(5, 7), 0);
+        assert_eq!(points.find_or_add(7, 5), 1);
+        assert_eq!(points.find_or_add(5, 7), 0);
     }
 }

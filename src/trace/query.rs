@@ -22,7 +22,7 @@ use crate::simd::Vec3;
 #[derive(Clone, Debug)]
 pub struct SceneQuery {
     plan: Plan<f64>,
-    all: Candidates,
+    candidates: Candidates,
 }
 
 /// A query that is kept for reuse: the next one may be about the same objects, seen from elsewhere.
@@ -53,11 +53,11 @@ impl SceneQuery {
             ..scene.clone()
         };
         let request = RenderRequest::sized(1, 1);
-        let mut own = Planner::default();
-        own.share_meshes(planner);
-        let plan = Plan::new(&unlit, &request, &mut own.double);
+        let mut query_planner = Planner::default();
+        query_planner.share_meshes(planner);
+        let plan = Plan::new(&unlit, &request, &mut query_planner.double);
         Self {
-            all: Candidates::all(&plan),
+            candidates: Candidates::all(&plan),
             plan,
         }
     }
@@ -76,7 +76,7 @@ impl SceneQuery {
             plan: &self.plan,
         };
         let targets = Targets {
-            candidates: &self.all,
+            candidates: &self.candidates,
             entry_points: &EntryPoints::default(),
             light: None,
             culled_faces: &[],
@@ -88,9 +88,9 @@ impl SceneQuery {
 
     /// Returns whether nothing stands between two points. What is at the second point itself does not count.
     pub fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
-        let arm = to - from;
-        match arm.try_normalize() {
-            Some(direction) => self.distance(from, direction) >= arm.length() * (1.0 - 1e-6),
+        let offset = to - from;
+        match offset.try_normalize() {
+            Some(direction) => self.distance(from, direction) >= offset.length() * (1.0 - 1e-6),
             None => true,
         }
     }
@@ -110,7 +110,7 @@ pub fn survey(
 ) -> bool {
     let sample = |sample: usize| {
         let framing = take.camera(sample).and_then(|camera| camera.framing());
-        framing.map_or(Vec::new(), |framing| query.look(&framing, aspect))
+        framing.map_or(Vec::new(), |framing| query.sample_grid(&framing, aspect))
     };
     while seen.len() < take.samples.len() {
         let last = take.samples.len().min(seen.len() + current_num_threads());
@@ -145,7 +145,7 @@ pub fn visible(
 
 impl SceneQuery {
     /// Returns what is seen at a grid of places in the picture.
-    fn look(&self, framing: &Framing, aspect: f64) -> Vec<Landmark> {
+    fn sample_grid(&self, framing: &Framing, aspect: f64) -> Vec<Landmark> {
         let last = f64::from(SURVEYED - 1);
         // Parallel rays all see the same place of the sky.
         let is_parallel = framing

@@ -1,13 +1,13 @@
 //! The cells of a tile whose insides are examined. They are handled one by one, not in lanes: the code is compiled
 //! once for each precision, not for every vector width.
 
-use super::borders::{Listener, PixelSides};
+use super::borders::{AdjacentPixel, PixelSides};
 use super::cell::Cell;
 use super::coverage::{CellFinding, CrossedCell};
 use super::lattice::{Inside, Lattice, Limits};
 use super::messages::{ALL, EdgeMessages};
 use super::samples::{EdgeDetail, Samples, Traced};
-use super::thresholds::{FINEST, TELLING};
+use super::thresholds::{MAX_EXCESS, PIXEL_STEPS};
 use super::tile::{Tile, TileColors};
 use crate::simd::Real;
 
@@ -15,7 +15,7 @@ use crate::simd::Real;
 const PARTS: u8 = 16;
 /// A pixel is crowded if all of its parts are to be divided, at least this many of them although their corners do
 /// not differ.
-const ALIKE: u8 = 4;
+const MIN_ALIKE_PARTS: u8 = 4;
 
 /// The cells of a tile whose inside is not known. If one edge crosses a cell according to its corners,
 /// [`CrossedCell`] takes a third of the samples that quarters would; if a cell shows one thing whose colour changes
@@ -31,14 +31,14 @@ pub struct Refinement<R> {
     /// Which sides of the pixels are known.
     borders: PixelSides,
     /// Number of samples that have been checked for what they tell the pixels beside them.
-    received: usize,
+    checked: usize,
     /// Pixels that have received a message and are not divided yet.
     notified_pixels: Vec<Cell>,
     /// Row and column in the tile of all pixels that have received one.
     notified: Vec<[usize; 2]>,
     /// For each pixel of the tile, row by row: how many of its sixteen parts are to be divided, and how many of
     /// these have corners that do not differ. Ends with the last pixel that has such parts.
-    busy: Vec<[u8; 2]>,
+    part_counts: Vec<[u8; 2]>,
     /// Row and column in the tile of the crowded pixels, which are divided no further.
     crowded: Vec<[usize; 2]>,
 }
@@ -53,10 +53,10 @@ impl<R: Real> Refinement<R> {
             crossed: Vec::new(),
             even: Vec::new(),
             borders: PixelSides::new(),
-            received: 0,
+            checked: 0,
             notified_pixels: Vec::new(),
             notified: Vec::new(),
-            busy: Vec::new(),
+            part_counts: Vec::new(),
             crowded: Vec::new(),
         }
     }
@@ -68,7 +68,7 @@ impl<R: Real> Refinement<R> {
         self.crossed.clear();
         self.even.clear();
         self.notified.clear();
-        self.busy.clear();
+        self.part_counts.clear();
         self.crowded.clear();
     }
 
@@ -104,12 +104,12 @@ impl<R: Real> Refinement<R> {
         self.lattice.clear();
         self.lattice.add(tile, corners, &mut self.to_divide);
         self.borders.start(tile, messages);
-        self.received = 0;
+        self.checked = 0;
         self.cells.append(&mut self.to_divide);
         for pixel in &self.cells {
             colors.blacken(pixel.pixel_in(colors.stride));
         }
-        self.sort(limits, colors);
+        self.classify(limits, colors);
         true
     }
 
@@ -124,7 +124,7 @@ impl<R: Real> Refinement<R> {
         self.clear();
         self.lattice.clear();
         self.borders.start(tile, messages);
-        self.received = 0;
+        self.checked = 0;
         for pixel in pixels {
             let pixel = self.borders.cell_of(*pixel);
             self.borders.note(&pixel, ALL);
@@ -135,18 +135,18 @@ impl<R: Real> Refinement<R> {
 
     /// Divides the pixels that are near something thin; in the others, their quarters need not be searched for it.
     #[inline(never)]
-    pub fn divide_near(&mut self) {
+    pub fn divide_near_thin(&mut self) {
         let (lattice, cells) = (&mut self.lattice, &mut self.cells);
         self.to_divide.retain(|pixel| {
-            let is_near = lattice.is_near(pixel);
-            if is_near {
+            let is_near_thin = lattice.is_near_thin(pixel);
+            if is_near_thin {
                 self.borders.note(pixel, ALL);
                 lattice.subdivide(pixel, cells);
             }
-            !is_near
+            !is_near_thin
         });
         for pixel in &mut self.to_divide {
-            pixel.detail = EdgeDetail::Bordered;
+            pixel.detail = EdgeDetail::Borders;
         }
     }
 
@@ -161,20 +161,20 @@ impl<R: Real> Refinement<R> {
 
     /// Requests the samples that decide about the cells. Returns whether there are any cells.
     #[inline(never)]
-    pub fn want(&mut self) -> bool {
+    pub fn request_samples(&mut self) -> bool {
         for cell in &mut self.crossed {
-            cell.want(&mut self.lattice);
+            cell.request_samples(&mut self.lattice);
         }
         for (cell, middle) in &mut self.even {
-            *middle = self.lattice.want_middle(cell);
+            *middle = self.lattice.request_middle(cell);
         }
         !(self.cells.is_empty() && self.crossed.is_empty() && self.even.is_empty())
     }
 
     /// Fills `samples` with those that were requested and have no result yet.
     #[inline(never)]
-    pub fn wanted_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
-        self.lattice.wanted_samples(tile, samples);
+    pub fn requested_samples(&self, tile: &Tile, samples: &mut Samples<R>) {
+        self.lattice.requested_samples(tile, samples);
     }
 
     /// Takes the results of these samples.
@@ -189,10 +189,10 @@ impl<R: Real> Refinement<R> {
 
     /// Adds the colours of the cells that are known well enough, and decides what to do with the others.
     #[inline(never)]
-    pub fn settle(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
+    pub fn evaluate_samples(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
         let (lattice, to_divide) = (&self.lattice, &mut self.to_divide);
         self.crossed
-            .retain_mut(|cell| match cell.take(lattice, colors) {
+            .retain_mut(|cell| match cell.evaluate(lattice, colors) {
                 CellFinding::Nothing => true,
                 CellFinding::Color => false,
                 CellFinding::NotOneEdge(cell) => {
@@ -209,75 +209,75 @@ impl<R: Real> Refinement<R> {
                     self.borders.note(&cell, crossed.sides());
                     self.crossed.push(crossed);
                 }
-                None => to_divide.push(cell.unwatched()),
+                None => to_divide.push(cell.signatures_only()),
             }
         }
-        self.sort(limits, colors);
-        self.leave_crowded(limits, colors.stride);
+        self.classify(limits, colors);
+        self.set_crowded_aside(limits, colors.stride);
         self.divide();
     }
 
     /// Stops dividing the pixels of which all parts are to be divided, some of them only because something thin is
     /// near: smaller parts are not searched for that. Which pixels these are depends only on what is seen in each of
     /// them.
-    fn leave_crowded(&mut self, limits: Limits<R>, stride: usize) {
+    fn set_crowded_aside(&mut self, limits: Limits<R>, stride: usize) {
         let before = self.crowded.len();
         for cell in &self.to_divide {
-            if usize::from(cell.side) != FINEST / 4 {
+            if usize::from(cell.side) != PIXEL_STEPS / 4 {
                 continue;
             }
             let pixel = cell.pixel_in(stride);
-            if self.busy.len() <= pixel {
-                self.busy.resize(pixel + 1, [0; 2]);
+            if self.part_counts.len() <= pixel {
+                self.part_counts.resize(pixel + 1, [0; 2]);
             }
-            let [parts, alike] = &mut self.busy[pixel];
+            let [parts, alike] = &mut self.part_counts[pixel];
             *parts += 1;
             *alike += u8::from(!self.lattice.differs(cell, limits));
-            if *parts == PARTS && *alike >= ALIKE {
+            if *parts == PARTS && *alike >= MIN_ALIKE_PARTS {
                 self.crowded.push(cell.row_and_column());
             }
         }
         if self.crowded.len() == before {
             return;
         }
-        let busy = &self.busy;
-        let is_left = |cell: &Cell| {
-            let busy = busy.get(cell.pixel_in(stride));
-            busy.is_none_or(|&[parts, alike]| parts < PARTS || alike < ALIKE)
+        let part_counts = &self.part_counts;
+        let is_kept = |cell: &Cell| {
+            let part_counts = part_counts.get(cell.pixel_in(stride));
+            part_counts.is_none_or(|&[parts, alike]| parts < PARTS || alike < MIN_ALIKE_PARTS)
         };
-        self.to_divide.retain(is_left);
-        self.crossed.retain(|crossed| is_left(crossed.cell()));
-        self.even.retain(|(cell, _)| is_left(cell));
+        self.to_divide.retain(is_kept);
+        self.crossed.retain(|crossed| is_kept(crossed.cell()));
+        self.even.retain(|(cell, _)| is_kept(cell));
     }
 
     /// Divides the pixels for which a sample on one of their sides shows that the samples behind their colour have
     /// not seen everything: the corner of something ends in them, say. Those of other tiles get a message. Returns
     /// whether any pixel was divided.
     #[inline(never)]
-    pub fn listen(
+    pub fn exchange_messages(
         &mut self,
         tile: &Tile,
         (corners, messages): (&Traced<R>, &EdgeMessages),
         colors: &mut TileColors<R>,
     ) -> bool {
-        for received in self.received..self.lattice.len() {
-            let Some(side) = self.borders.side_of(self.lattice.point(received)) else {
+        for index in self.checked..self.lattice.len() {
+            let Some(side) = self.borders.side_of(self.lattice.point(index)) else {
                 continue;
             };
-            if R::from_f64(TELLING) < self.lattice.excess(received, side.ends) {
-                for (place, side) in side.notified_pixels.into_iter().flatten() {
-                    match self.borders.listener(place) {
-                        Some(Listener::Here(pixel)) => {
+            if R::from_f64(MAX_EXCESS) < self.lattice.excess(index, side.ends) {
+                for (pixel_index, side) in side.notified_pixels.into_iter().flatten() {
+                    match self.borders.adjacent_pixel(pixel_index) {
+                        Some(AdjacentPixel::InTile(pixel)) => {
                             self.borders.note(&pixel, ALL);
                             self.notified_pixels.push(pixel);
                         }
-                        Some(Listener::Elsewhere(pixel)) => messages.send(pixel, side),
+                        Some(AdjacentPixel::InOtherTile(pixel)) => messages.send(pixel, side),
                         None => {}
                     }
                 }
             }
         }
-        self.received = self.lattice.len();
+        self.checked = self.lattice.len();
         self.divide_notified(tile, corners, colors);
         let is_done = self.cells.is_empty();
         if is_done {
@@ -291,8 +291,8 @@ impl<R: Real> Refinement<R> {
         self.lattice.add(tile, corners, &mut self.notified_pixels);
         for pixel in self.notified_pixels.drain(..) {
             colors.blacken(pixel.pixel_in(colors.stride));
-            if let Some(busy) = self.busy.get_mut(pixel.pixel_in(colors.stride)) {
-                *busy = [0; 2];
+            if let Some(part_counts) = self.part_counts.get_mut(pixel.pixel_in(colors.stride)) {
+                *part_counts = [0; 2];
             }
             self.notified.push(pixel.row_and_column());
             let first = self.to_divide.len();
@@ -305,10 +305,10 @@ impl<R: Real> Refinement<R> {
 
     /// Adds the colours of the cells that are known by their corners, and sorts the others: those that one edge
     /// crosses, those whose colour may change evenly, and those to divide.
-    fn sort(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
+    fn classify(&mut self, limits: Limits<R>, colors: &mut TileColors<R>) {
         let lattice = &self.lattice;
         for mut cell in self.cells.drain(..) {
-            if usize::from(cell.side) == FINEST {
+            if usize::from(cell.side) == PIXEL_STEPS {
                 cell.swaps_lights = lattice.may_swap_lights(&cell);
             }
             match lattice.inside(&cell, limits) {

@@ -15,7 +15,7 @@ use crate::simd::{Level, SimdFloat, WithSimd};
 pub struct DoublePrecision {
     plan: Box<Plan<f64>>,
     /// Everything that camera rays may hit first.
-    seen: Candidates,
+    candidates: Candidates,
     level: Level,
     workspace_pool: WorkspacePool,
 }
@@ -24,7 +24,7 @@ impl DoublePrecision {
     /// Creates a retracer from a plan.
     pub fn new(plan: Box<Plan<f64>>, level: Level) -> Self {
         Self {
-            seen: Candidates::all_seen(&plan),
+            candidates: Candidates::all_seen(&plan),
             plan,
             level,
             workspace_pool: WorkspacePool::default(),
@@ -41,7 +41,7 @@ impl Retracer for DoublePrecision {
         traced: &mut Traced<f64>,
     ) {
         self.level.run(Retrace {
-            exact: self,
+            retracer: self,
             samples,
             edges,
             stop,
@@ -52,7 +52,7 @@ impl Retracer for DoublePrecision {
 
 /// Samples to trace.
 struct Retrace<'a> {
-    exact: &'a DoublePrecision,
+    retracer: &'a DoublePrecision,
     samples: &'a mut Samples<f64>,
     edges: EdgeDetail,
     stop: &'a AtomicBool,
@@ -66,15 +66,15 @@ impl WithSimd<f64> for Retrace<'_> {
     fn run<L: SimdFloat<Real = f64>>(self, token: L::Token) {
         let DoublePrecision {
             plan,
-            seen,
+            candidates,
             workspace_pool,
             ..
-        } = self.exact;
+        } = self.retracer;
         let mut work = workspace_pool.take::<Workspace<L>>().unwrap_or_default();
         self.samples.pad(L::WIDTH);
         let kernel = Kernel { token, plan };
         let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.stop, None));
-        engine.trace(self.samples, seen, self.edges, self.traced);
+        engine.trace(self.samples, candidates, self.edges, self.traced);
         workspace_pool.put(work);
     }
 }

@@ -8,22 +8,22 @@ use super::faces::may_hide_face;
 use super::lattice::{Limits, range};
 use super::messages::EdgeMessages;
 use super::refinement::Refinement;
-use super::samples::{EdgeDetail, Samples, THING, Traced};
+use super::samples::{EdgeDetail, OBJECT_BITS, Samples, Traced};
 use super::shadows::{may_leave_gap, may_swap_lights};
 use super::thresholds::FARTHEST_CORNER;
 use super::tile::{Tile, TileColors};
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat};
 
 /// Number of crowded pixels that are traced at once.
-const AT_ONCE: usize = 64;
+const PIXELS_PER_BATCH: usize = 64;
 
 /// Steps per pixel to which places are rounded: single precision can represent them anywhere in a picture of 16,384
 /// pixels, so that both precisions trace the same rays.
-const STEPS: f64 = 512.0;
+const ROUNDING_STEPS: f64 = 512.0;
 
 /// Rounds a place in a pixel to one that both precisions can represent.
-fn whole_steps(place: f64) -> f64 {
-    (place * STEPS).round() / STEPS
+fn round_to_steps(coordinate: f64) -> f64 {
+    (coordinate * ROUNDING_STEPS).round() / ROUNDING_STEPS
 }
 
 /// Samples the pixels of tiles; its buffers are reused.
@@ -66,7 +66,7 @@ impl<L: SimdFloat> Sampler<L> {
     pub fn centres<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         pixels: impl Iterator<Item = (usize, usize)>,
     ) -> &Traced<L::Real> {
         let centre = |index: usize| L::Real::from_f64(index as f64 + 0.5);
@@ -75,22 +75,27 @@ impl<L: SimdFloat> Sampler<L> {
             self.samples.push(centre(column), centre(row));
         }
         self.samples.pad(L::WIDTH);
-        engine.trace(&self.samples, seen, EdgeDetail::Ignored, &mut self.traced);
+        engine.trace(
+            &self.samples,
+            candidates,
+            EdgeDetail::Ignored,
+            &mut self.traced,
+        );
         &self.traced
     }
 
     /// Traces each pixel of a tile at (`x`, `y`) from its upper left corner and returns the results row by row,
     /// followed by padding.
     #[inline(always)]
-    pub fn all<const TREE: bool>(
+    pub fn one_per_pixel<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         (x, y): (f64, f64),
     ) -> &Traced<L::Real> {
         let pixels = (tile.columns.clone(), tile.rows.clone());
-        self.trace(engine, seen, pixels, ((x, y), EdgeDetail::Ignored));
+        self.trace(engine, candidates, pixels, ((x, y), EdgeDetail::Ignored));
         &self.traced
     }
 
@@ -99,36 +104,38 @@ impl<L: SimdFloat> Sampler<L> {
     fn trace<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         (columns, rows): (Range<usize>, Range<usize>),
         ((x, y), edges): ((f64, f64), EdgeDetail),
     ) {
-        let place = |index: usize, off: f64| L::Real::from_f64(index as f64 + whole_steps(off));
+        let coordinate =
+            |index: usize, off: f64| L::Real::from_f64(index as f64 + round_to_steps(off));
         self.columns.clear();
-        self.columns.extend(columns.map(|column| place(column, x)));
-        if TREE && self.in_squares && seen.has_geometry {
+        self.columns
+            .extend(columns.map(|column| coordinate(column, x)));
+        if TREE && self.in_squares && candidates.has_geometry {
             self.rows.clear();
-            self.rows.extend(rows.map(|row| place(row, y)));
+            self.rows.extend(rows.map(|row| coordinate(row, y)));
             self.samples
-                .cross_in_squares(&self.columns, &self.rows, &mut self.order);
+                .set_grid_in_squares(&self.columns, &self.rows, &mut self.order);
             self.samples.pad(L::WIDTH);
-            engine.trace(&self.samples, seen, edges, &mut self.unsorted);
+            engine.trace(&self.samples, candidates, edges, &mut self.unsorted);
             self.traced.take_sorted(&self.unsorted, &self.order);
         } else {
             self.samples
-                .cross(&self.columns, rows.map(|row| place(row, y)));
+                .set_grid(&self.columns, rows.map(|row| coordinate(row, y)));
             self.samples.pad(L::WIDTH);
-            engine.trace(&self.samples, seen, edges, &mut self.traced);
+            engine.trace(&self.samples, candidates, edges, &mut self.traced);
         }
     }
 
     /// Sets `colors` to the means of `side × side` samples in each pixel, each in the middle of its part, see
-    /// [`whole_steps`].
+    /// [`round_to_steps`].
     #[inline(always)]
     pub fn grid<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         side: u32,
         colors: &mut TileColors<L::Real>,
@@ -137,8 +144,8 @@ impl<L: SimdFloat> Sampler<L> {
         let share = L::Real::from_f64(1.0 / f64::from(side * side));
         let middle = |part: u32| (f64::from(part) + 0.5) / f64::from(side);
         for part in 0..side * side {
-            let place = (middle(part % side), middle(part / side));
-            let traced = self.all(engine, seen, tile, place);
+            let position = (middle(part % side), middle(part / side));
+            let traced = self.one_per_pixel(engine, candidates, tile, position);
             for (sum, new) in colors.channels.iter_mut().zip(traced.channels()) {
                 for (sum, new) in sum.iter_mut().zip(new) {
                     *sum = *sum + *new * share;
@@ -156,12 +163,12 @@ impl<L: SimdFloat> Sampler<L> {
     pub fn adaptive<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         (limits, messages): (Limits<L::Real>, &EdgeMessages),
         colors: &mut TileColors<L::Real>,
     ) {
-        self.trace_corners(engine, seen, tile);
+        self.trace_corners(engine, candidates, tile);
         self.average_and_select(engine.token(), tile, limits, colors);
         let corners = (&self.corners, messages);
         if !self.refinement.start(tile, corners, limits, colors) {
@@ -170,11 +177,11 @@ impl<L: SimdFloat> Sampler<L> {
         // Thin things are searched for once more, in the middles of pixels and of their sides. What is thinner than
         // the quarters of pixels is hit by some sample nearby, or shows too little. If nothing thin is near the
         // corners of a pixel, there is none in it either.
-        self.refinement.divide_near();
-        self.trace_wanted(engine, seen, tile, EdgeDetail::Near);
+        self.refinement.divide_near_thin();
+        self.trace_requested(engine, candidates, tile, EdgeDetail::Thin);
         self.refinement.divide();
-        self.trace_wanted(engine, seen, tile, EdgeDetail::Bordered);
-        self.refine(engine, seen, tile, (limits, messages), colors);
+        self.trace_requested(engine, candidates, tile, EdgeDetail::Borders);
+        self.refine(engine, candidates, tile, (limits, messages), colors);
     }
 
     /// Sets the colours of the pixels that have received a message, by row and column in the picture, and of those
@@ -182,18 +189,18 @@ impl<L: SimdFloat> Sampler<L> {
     pub fn notified_pixels<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         (limits, messages, pixels): (Limits<L::Real>, &EdgeMessages, &[[usize; 2]]),
         colors: &mut TileColors<L::Real>,
     ) {
-        self.trace_corners(engine, seen, tile);
+        self.trace_corners(engine, candidates, tile);
         let stride = tile.width() + 1;
         colors.resize(stride, stride * tile.rows.len());
         let corners = (&self.corners, messages);
         self.refinement
             .start_notified(tile, corners, pixels, colors);
-        self.refine(engine, seen, tile, (limits, messages), colors);
+        self.refine(engine, candidates, tile, (limits, messages), colors);
     }
 
     /// The pixels of the last tile that have received a message, by row and column in it.
@@ -206,16 +213,16 @@ impl<L: SimdFloat> Sampler<L> {
     fn trace_corners<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
     ) {
         let columns = tile.columns.start..tile.columns.end + 1;
         let rows = tile.rows.start..tile.rows.end + 1;
         self.trace(
             engine,
-            seen,
+            candidates,
             (columns, rows),
-            ((0.0, 0.0), EdgeDetail::Near),
+            ((0.0, 0.0), EdgeDetail::Thin),
         );
         std::mem::swap(&mut self.traced, &mut self.corners);
     }
@@ -225,26 +232,26 @@ impl<L: SimdFloat> Sampler<L> {
     fn refine<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         (limits, messages): (Limits<L::Real>, &EdgeMessages),
         colors: &mut TileColors<L::Real>,
     ) {
         loop {
-            while self.refinement.want() {
-                self.trace_wanted(engine, seen, tile, EdgeDetail::Signed);
-                self.refinement.settle(limits, colors);
+            while self.refinement.request_samples() {
+                self.trace_requested(engine, candidates, tile, EdgeDetail::Signatures);
+                self.refinement.evaluate_samples(limits, colors);
             }
             let corners = (&self.corners, messages);
             if engine.is_stopped() {
                 return;
             }
-            if !self.refinement.listen(tile, corners, colors) {
+            if !self.refinement.exchange_messages(tile, corners, colors) {
                 break;
             }
         }
         if !self.refinement.crowded().is_empty() {
-            self.fill_crowded(engine, seen, tile, limits, colors);
+            self.fill_crowded(engine, candidates, tile, limits, colors);
         }
     }
 
@@ -254,33 +261,38 @@ impl<L: SimdFloat> Sampler<L> {
     fn fill_crowded<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         limits: Limits<L::Real>,
         colors: &mut TileColors<L::Real>,
     ) {
         let (count, step) = limits.spread_out();
         let share = L::Real::from_f64(1.0 / count as f64);
-        let place = |pixel: usize, part: usize| {
+        let coordinate = |pixel: usize, part: usize| {
             let part = (part as f64 + 0.5) / count as f64;
-            L::Real::from_f64(pixel as f64 + whole_steps(part))
+            L::Real::from_f64(pixel as f64 + round_to_steps(part))
         };
-        for pixels in self.refinement.crowded().chunks(AT_ONCE) {
+        for pixels in self.refinement.crowded().chunks(PIXELS_PER_BATCH) {
             self.samples.clear();
             for &[row, column] in pixels {
                 let (x, y) = (tile.columns.start + column, tile.rows.start + row);
                 for part in 0..count {
                     self.samples
-                        .push(place(x, part), place(y, part * step % count));
+                        .push(coordinate(x, part), coordinate(y, part * step % count));
                 }
             }
             self.samples.pad(L::WIDTH);
-            engine.trace(&self.samples, seen, EdgeDetail::Ignored, &mut self.traced);
+            engine.trace(
+                &self.samples,
+                candidates,
+                EdgeDetail::Ignored,
+                &mut self.traced,
+            );
             for (number, &[row, column]) in pixels.iter().enumerate() {
-                let own = number * count..(number + 1) * count;
+                let pixel_samples = number * count..(number + 1) * count;
                 let pixel = row * colors.stride + column;
                 for (mean, traced) in colors.channels.iter_mut().zip(self.traced.channels()) {
-                    let sum = traced[own.clone()].iter();
+                    let sum = traced[pixel_samples.clone()].iter();
                     let sum = sum.fold(L::Real::ZERO, |sum, &one| sum + one);
                     mean[pixel] = sum * share;
                 }
@@ -290,17 +302,17 @@ impl<L: SimdFloat> Sampler<L> {
 
     /// Traces the samples that were requested and have no result yet.
     #[inline(always)]
-    fn trace_wanted<const TREE: bool>(
+    fn trace_requested<const TREE: bool>(
         &mut self,
         engine: &mut Engine<L, TREE>,
-        seen: &Candidates,
+        candidates: &Candidates,
         tile: &Tile,
         edges: EdgeDetail,
     ) {
-        self.refinement.wanted_samples(tile, &mut self.samples);
+        self.refinement.requested_samples(tile, &mut self.samples);
         self.samples.pad(L::WIDTH);
         if self.samples.count > 0 {
-            engine.trace(&self.samples, seen, edges, &mut self.traced);
+            engine.trace(&self.samples, candidates, edges, &mut self.traced);
             self.refinement.take_results(&self.traced);
         }
     }
@@ -333,21 +345,24 @@ impl<L: SimdFloat> Sampler<L> {
                 contrast = contrast + range(a, b, c, d);
             }
             let mut limit = [L::Real::ZERO; MAX_LANES];
-            let seen = |from: usize| &self.corners.signature[from..from + L::WIDTH];
-            let (a, b) = (seen(first), seen(first + 1));
-            let (c, d) = (seen(first + stride), seen(first + stride + 1));
+            let signatures_at = |from: usize| &self.corners.signature[from..from + L::WIDTH];
+            let (a, b) = (signatures_at(first), signatures_at(first + 1));
+            let (c, d) = (
+                signatures_at(first + stride),
+                signatures_at(first + stride + 1),
+            );
             for lane in 0..L::WIDTH {
-                let differing = (a[lane] ^ b[lane]) | (a[lane] ^ c[lane]) | (a[lane] ^ d[lane]);
-                limit[lane] = if differing & THING == 0 {
-                    limits.contrast(differing == 0)
+                let diff = (a[lane] ^ b[lane]) | (a[lane] ^ c[lane]) | (a[lane] ^ d[lane]);
+                limit[lane] = if diff & OBJECT_BITS == 0 {
+                    limits.contrast(diff == 0)
                 } else {
                     -L::Real::ONE
                 };
             }
             if has_shadows {
-                let dark = |from: usize| &self.corners.shadows[from..from + L::WIDTH];
-                let (a, b) = (dark(first), dark(first + 1));
-                let (c, d) = (dark(first + stride), dark(first + stride + 1));
+                let shadows_at = |from: usize| &self.corners.shadows[from..from + L::WIDTH];
+                let (a, b) = (shadows_at(first), shadows_at(first + 1));
+                let (c, d) = (shadows_at(first + stride), shadows_at(first + stride + 1));
                 for lane in 0..L::WIDTH {
                     let shadows = [a[lane], b[lane], c[lane], d[lane]];
                     limit[lane] = if may_leave_gap(shadows) | may_swap_lights(shadows) {
@@ -357,25 +372,25 @@ impl<L: SimdFloat> Sampler<L> {
                     };
                 }
             }
-            let [a, b, c, d] = corners_at::<L>(token, &self.corners.near, first, stride);
-            let is_near = a.min(b).min(c.min(d)).less(reach);
-            let wanting = is_near | L::load(token, &limit).less(contrast);
-            let mut left = wanting.bits();
-            let hiding = if has_faces {
-                hiding_at(&self.corners.faces, (first, stride), L::WIDTH)
+            let [a, b, c, d] = corners_at::<L>(token, &self.corners.thin_distance, first, stride);
+            let is_near_thin = a.min(b).min(c.min(d)).less(reach);
+            let to_divide = is_near_thin | L::load(token, &limit).less(contrast);
+            let mut remaining = to_divide.bits();
+            let may_hide = if has_faces {
+                may_hide_at(&self.corners.faces, (first, stride), L::WIDTH)
             } else {
                 0
             };
-            left |= hiding;
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize;
+            remaining |= may_hide;
+            while remaining != 0 {
+                let lane = remaining.trailing_zeros() as usize;
                 let index = first + lane;
-                left &= left - 1;
+                remaining &= remaining - 1;
                 let (column, row) = (index % stride, index / stride);
                 if column == width || row >= tile.rows.len() {
                     continue;
                 }
-                self.refinement.add(column, row, hiding >> lane & 1 == 1);
+                self.refinement.add(column, row, may_hide >> lane & 1 == 1);
             }
         }
     }
@@ -396,18 +411,18 @@ fn corners_at<L: SimdFloat>(
 
 /// Returns which of `count` cells, from `first` on, may show a face of a mesh, or light between two, that no corner
 /// has seen; bit by bit.
-fn hiding_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
+fn may_hide_at(faces: &[u64], (first, stride): (usize, usize), count: usize) -> u64 {
     let above = &faces[first..=first + count];
     let below = &faces[first + stride..=first + stride + count];
     // Most cells are on a single face: checked in step.
-    let differing = |row: &[u64]| row.iter().fold(0, |all, face| all | (face ^ above[0]));
-    if differing(above) | differing(below) == 0 {
+    let diff = |row: &[u64]| row.iter().fold(0, |all, face| all | (face ^ above[0]));
+    if diff(above) | diff(below) == 0 {
         return 0;
     }
-    let mut hiding = 0;
+    let mut may_hide = 0;
     for cell in 0..count {
         let corners = [above[cell], above[cell + 1], below[cell], below[cell + 1]];
-        hiding |= u64::from(may_hide_face(corners)) << cell;
+        may_hide |= u64::from(may_hide_face(corners)) << cell;
     }
-    hiding
+    may_hide
 }

@@ -10,12 +10,12 @@ pub enum EdgeDetail {
     /// Only colours.
     Ignored,
     /// Also signatures, which reveal edges.
-    Signed,
+    Signatures,
     /// Also the shadows that end near the samples, and the faces that they are on: between two of those may be
     /// others.
-    Bordered,
+    Borders,
     /// Also things so thin that they may slip between samples.
-    Near,
+    Thin,
 }
 
 /// Places in the picture to trace, in pixels from its left and upper edge; padded to whole packets.
@@ -43,17 +43,17 @@ pub struct Traced<R> {
     /// Equal where the same things were hit and lit, directly and in mirrors. Only with edges.
     pub signature: Vec<u32>,
     /// Distance in pixels of the nearest thing that may slip between samples. Only with edges.
-    pub near: Vec<R>,
+    pub thin_distance: Vec<R>,
     /// The shadows that the sample is in and that end near it, see [`super::shadows`]. Only with edges.
     pub shadows: Vec<u32>,
     /// The mark of the flat face that the sample is on, see [`super::faces`]; empty in scenes without. Only from
-    /// [`EdgeDetail::Bordered`] on.
+    /// [`EdgeDetail::Borders`] on.
     pub faces: Vec<u64>,
 }
 
 /// The bits of signatures that identify what is seen directly; the others also depend on which lights shine there
 /// and on what is seen in mirrors.
-pub const THING: u32 = 0xFFFF_0000;
+pub const OBJECT_BITS: u32 = 0xFFFF_0000;
 
 /// Factor that darkens the other samples where some are marked.
 const DARKENED: f64 = 0.25;
@@ -87,7 +87,7 @@ impl<R: Real> Samples<R> {
 
     /// Sets the places to all crossings of columns with rows, row by row.
     #[inline(always)]
-    pub fn cross(&mut self, columns: &[R], rows: impl ExactSizeIterator<Item = R>) {
+    pub fn set_grid(&mut self, columns: &[R], rows: impl ExactSizeIterator<Item = R>) {
         let (width, height) = (columns.len(), rows.len());
         self.x.resize(width * height, R::ZERO);
         self.y.resize(width * height, R::ZERO);
@@ -103,7 +103,7 @@ impl<R: Real> Samples<R> {
     /// Does the same square by square, so that a packet covers places that are close together. `order` becomes the
     /// index of each place, counted row by row.
     #[inline(always)]
-    pub fn cross_in_squares(&mut self, columns: &[R], rows: &[R], order: &mut Vec<u32>) {
+    pub fn set_grid_in_squares(&mut self, columns: &[R], rows: &[R], order: &mut Vec<u32>) {
         self.clear();
         order.clear();
         let (whole_columns, whole_rows) = (
@@ -150,7 +150,7 @@ impl<R: Real> Traced<R> {
             (&mut self.red, &other.red),
             (&mut self.green, &other.green),
             (&mut self.blue, &other.blue),
-            (&mut self.near, &other.near),
+            (&mut self.thin_distance, &other.thin_distance),
         ];
         for (to, from) in columns {
             sort(to, from, order);
@@ -165,40 +165,40 @@ impl<R: Real> Traced<R> {
         [&self.red, &self.green, &self.blue]
     }
 
-    /// Replaces the results of the samples at `places` by those in double precision.
-    pub fn replace(&mut self, places: &[u32], seen: &Traced<f64>, edges: EdgeDetail) {
+    /// Replaces the results of the samples at `indices` by those in double precision.
+    pub fn replace(&mut self, indices: &[u32], retraced: &Traced<f64>, edges: EdgeDetail) {
         let columns = [
-            (&mut self.red, &seen.red),
-            (&mut self.green, &seen.green),
-            (&mut self.blue, &seen.blue),
-            (&mut self.near, &seen.near),
+            (&mut self.red, &retraced.red),
+            (&mut self.green, &retraced.green),
+            (&mut self.blue, &retraced.blue),
+            (&mut self.thin_distance, &retraced.thin_distance),
         ];
-        let noted = if edges == EdgeDetail::Ignored { 3 } else { 4 };
-        for (to, from) in columns.into_iter().take(noted) {
-            for (&index, &number) in places.iter().zip(from) {
+        let column_count = if edges == EdgeDetail::Ignored { 3 } else { 4 };
+        for (to, from) in columns.into_iter().take(column_count) {
+            for (&index, &number) in indices.iter().zip(from) {
                 to[index as usize] = R::from_f64(number);
             }
         }
         if edges != EdgeDetail::Ignored {
-            for (&index, &signature) in places.iter().zip(&seen.signature) {
+            for (&index, &signature) in indices.iter().zip(&retraced.signature) {
                 self.signature[index as usize] = signature;
             }
-            for (&index, &shadows) in places.iter().zip(&seen.shadows) {
+            for (&index, &shadows) in indices.iter().zip(&retraced.shadows) {
                 self.shadows[index as usize] = shadows;
             }
-            for (&index, &face) in places.iter().zip(&seen.faces) {
+            for (&index, &face) in indices.iter().zip(&retraced.faces) {
                 self.faces[index as usize] = face;
             }
         }
     }
 
     /// Makes these samples white, and darkens all others.
-    pub fn mark(&mut self, places: &[u32]) {
+    pub fn mark(&mut self, indices: &[u32]) {
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             for number in column.iter_mut() {
                 *number = *number * R::from_f64(DARKENED);
             }
-            for &index in places {
+            for &index in indices {
                 column[index as usize] = R::ONE;
             }
         }
@@ -210,7 +210,7 @@ impl<R: Real> Traced<R> {
         self.red.fill(color.x);
         self.green.fill(color.y);
         self.blue.fill(color.z);
-        self.near.fill(R::INFINITY);
+        self.thin_distance.fill(R::INFINITY);
         self.signature.fill(0);
         self.shadows.fill(0);
     }
@@ -221,14 +221,14 @@ impl<R: Real> Traced<R> {
         for column in [&mut self.red, &mut self.green, &mut self.blue] {
             column.resize(length, R::ZERO);
         }
-        let noted = if edges == EdgeDetail::Ignored {
+        let edge_length = if edges == EdgeDetail::Ignored {
             0
         } else {
             length
         };
-        self.near.resize(noted, R::ZERO);
-        self.signature.resize(noted, 0);
-        self.shadows.resize(noted, 0);
+        self.thin_distance.resize(edge_length, R::ZERO);
+        self.signature.resize(edge_length, 0);
+        self.shadows.resize(edge_length, 0);
     }
 
     /// Makes room for packets that begin at any sample; the values there are meaningless.
@@ -239,7 +239,7 @@ impl<R: Real> Traced<R> {
             &mut self.red,
             &mut self.green,
             &mut self.blue,
-            &mut self.near,
+            &mut self.thin_distance,
         ] {
             column.resize(length, R::ZERO);
         }

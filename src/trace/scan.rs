@@ -41,8 +41,8 @@ pub trait Test<L: SimdFloat> {
     /// Ends the tests of the faces of that mesh.
     fn leave_mesh(&mut self) {}
 
-    /// Tests the contents of a box for the rays that see it as one thing, see [`TreeVisitor::settle`].
-    fn settle(
+    /// Tests the contents of a box for the rays that see it as one thing, see [`TreeVisitor::visit_merged_box`].
+    fn test_merged_box(
         &mut self,
         _ball: (Vec3<L::Real>, L::Real),
         _thickness: L::Real,
@@ -53,7 +53,7 @@ pub trait Test<L: SimdFloat> {
     }
 
     /// Excludes these rays, bit by bit, from the tests that follow. Returns the rays that were excluded before.
-    fn leave_out(&mut self, _settled: u64) -> u64 {
+    fn exclude_lanes(&mut self, _merged_lanes: u64) -> u64 {
         0
     }
 
@@ -140,7 +140,7 @@ impl<L: SimdFloat> TreeScan<'_, L> {
             Some(point) => Bundle::from_point(point, (rays, &self.blur), self.active, reach),
         };
         if !self.is_boxed {
-            bundle.meet_all();
+            bundle.accept_all_boxes();
         }
         let mut objects = ObjectVisitor {
             tree_scan: self,
@@ -180,37 +180,38 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>) {
+    fn visit_member(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>) {
         let (geometry, index) = (self.tree_scan.geometry, member as usize);
         let number = self.tree_scan.first + index;
         let primitives = &geometry.primitives;
         if let Some(mesh) = index.checked_sub(primitives.len()) {
-            return self.meet_mesh((mesh, width), stack);
+            return self.scan_mesh((mesh, width), stack);
         }
-        let mut tested = Tested {
+        let mut test_prepared = TestPrepared {
             paths: self.paths,
             number,
             test: self.test,
         };
-        primitives.with_prepared(index, &self.prepared, &mut tested);
+        primitives.with_prepared(index, &self.prepared, &mut test_prepared);
     }
 
     #[inline(always)]
-    fn settle(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
+    fn visit_merged_box(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
         let active = self.tree_scan.active;
-        self.test.settle(ball, thickness, self.paths, active)
+        self.test
+            .test_merged_box(ball, thickness, self.paths, active)
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, merged_lanes: u64) {
-        self.test.leave_out(merged_lanes);
+    fn exclude_lanes(&mut self, merged_lanes: u64) {
+        self.test.exclude_lanes(merged_lanes);
     }
 }
 
 impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
     /// Scans a mesh, with rays relative to its middle.
     #[inline(always)]
-    fn meet_mesh(&mut self, (mesh, width): (usize, L::Real), stack: &mut Stack<L::Real>) {
+    fn scan_mesh(&mut self, (mesh, width): (usize, L::Real), stack: &mut Stack<L::Real>) {
         let TreeScan {
             geometry,
             first,
@@ -244,9 +245,9 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
             test: self.test,
         };
         if T::FINDS_THIN {
-            let merged_lanes = faces.test.leave_out(0);
+            let merged_lanes = faces.test.exclude_lanes(0);
             walk_thin(bvh, &bundle, margin, (stack, merged_lanes), &mut faces);
-            faces.test.leave_out(merged_lanes);
+            faces.test.exclude_lanes(merged_lanes);
         } else if let Some(start) = entry_points.of_mesh(geometry, mesh) {
             walk((bvh, start), &bundle, stack, &mut faces);
         }
@@ -281,20 +282,21 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn meet(&mut self, member: u32, _width: L::Real, _stack: &mut Stack<L::Real>) {
+    fn visit_member(&mut self, member: u32, _width: L::Real, _stack: &mut Stack<L::Real>) {
         let (index, prepared) = (member as usize, &self.prepared.triangles);
         let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
         self.test.test(triangle, prepared, self.paths, number);
     }
 
     #[inline(always)]
-    fn settle(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
-        self.test.settle(ball, thickness, self.paths, self.active)
+    fn visit_merged_box(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
+        self.test
+            .test_merged_box(ball, thickness, self.paths, self.active)
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, merged_lanes: u64) {
-        self.test.leave_out(merged_lanes);
+    fn exclude_lanes(&mut self, merged_lanes: u64) {
+        self.test.exclude_lanes(merged_lanes);
     }
 }
 
@@ -304,13 +306,13 @@ fn active_reach<L: SimdFloat>(active: L::Mask, test: &impl Test<L>) -> L {
     L::select(active, reach, reach.like_f64(-1.0))
 }
 
-struct Tested<'a, L, T> {
+struct TestPrepared<'a, L, T> {
     paths: &'a Paths<L>,
     number: usize,
     test: &'a mut T,
 }
 
-impl<L: SimdFloat, T: Test<L>> WithPrepared<L> for Tested<'_, L, T> {
+impl<L: SimdFloat, T: Test<L>> WithPrepared<L> for TestPrepared<'_, L, T> {
     #[inline(always)]
     fn run<P: Primitive<L::Real>>(&mut self, primitive: &P, prepared: &P::Prepared<L>) {
         if P::IS_ENDLESS {

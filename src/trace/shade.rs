@@ -12,7 +12,7 @@ use super::intersect::{Blocked, Kernel};
 use super::mirrored::Mirrored;
 use super::mixed_materials::{ArrivingLight, MixedMaterials};
 use super::packet::{EdgeInfo, Packet};
-use super::paths::{IgnoredPrimitive, NOTHING, Paths};
+use super::paths::{IgnoredPrimitive, NO_PRIMITIVE, Paths};
 use super::shadows::light_bit;
 use super::stats::Rays;
 use super::surface::Hit;
@@ -38,7 +38,7 @@ pub struct Shader<'a, L: SimdFloat, const TREE: bool> {
     /// For each light, what may block it.
     pub lights: &'a [LightCandidates],
     /// The same, if there may be gaps between two shadows, and these are looked for.
-    pub gaps: Option<&'a [LightCandidates]>,
+    pub gap_lights: Option<&'a [LightCandidates]>,
 }
 
 /// What is noted of a packet, if it is wanted: its edges and its uncertainty.
@@ -53,7 +53,7 @@ struct ShadingPoint<'a, L: SimdFloat> {
     /// How large a pixel is at the hits, if edges are noted.
     footprint: Option<Footprint<L>>,
     /// How far the hits may be off, if doubts are noted.
-    slant: Option<HitError<L>>,
+    error: Option<HitError<L>>,
 }
 
 /// One of the plan's lights.
@@ -84,8 +84,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let mut uncertainty = uncertainty.filter(|_| is_filtered::<L, TREE>());
         let mut mirrored: Option<Mirrored<L>> = None;
         // What is in doubt is traced again: nothing more is needed of it.
-        let told = match &uncertainty {
-            Some(own) => packet.active & !own.doubt,
+        let certain = match &uncertainty {
+            Some(uncertainty) => packet.active & !uncertainty.doubt,
             None => packet.active,
         };
         if let Some(edge) = edge.as_mut().filter(|_| self.looks_for(self.thin)) {
@@ -95,32 +95,32 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             };
             let query = ThinQuery {
                 paths: &paths,
-                active: told,
+                active: certain,
                 cone: edge.cone,
                 in_meshes: edge.cone.widening(),
                 spread: edge.cone.spread,
-                reach: packet.near.t,
+                reach: packet.nearest.t,
                 is_to_light: false,
             };
-            edge.near = kernel.thin_distance(self.thin, &query, stack);
+            edge.thin_distance = kernel.thin_distance(self.thin, &query, stack);
         }
 
         // One turn for each primitive that was hit, for all rays that have hit it or others of its kind.
-        let nothing = kernel.splat(NOTHING);
-        let mut left = (nothing.less(packet.near.number) & told).bits();
-        while left != 0 {
-            let mut hit = kernel.refine(&packet.rays, &packet.near, left, mixed);
-            left &= !hit.here.bits();
-            let instead = self.instead(packet, &hit);
-            let Some(material) = self.material(packet, &mut hit, (instead, told), mixed) else {
+        let nothing = kernel.splat(NO_PRIMITIVE);
+        let mut remaining = (nothing.less(packet.nearest.number) & certain).bits();
+        while remaining != 0 {
+            let mut hit = kernel.refine(&packet.rays, &packet.nearest, remaining, mixed);
+            remaining &= !hit.lanes.bits();
+            let stand_in = self.stand_in(packet, &hit);
+            let Some(material) = self.material(packet, &mut hit, (stand_in, certain), mixed) else {
                 continue;
             };
             let mut point = self.shading_point(packet, hit, material, (&edge, &uncertainty));
-            if let Some(own) = uncertainty.as_deref_mut() {
-                self.doubt_mirrors(&point, own);
-                point.hit.here = point.hit.here & !own.doubt;
+            if let Some(uncertainty) = uncertainty.as_deref_mut() {
+                self.doubt_mirrors(&point, uncertainty);
+                point.hit.lanes = point.hit.lanes & !uncertainty.doubt;
             }
-            if instead.is_none() {
+            if stand_in.is_none() {
                 let mut arriving = ArrivingLight {
                     matte: kernel.splat(0.0),
                     highlight: kernel.splat(0.0),
@@ -138,17 +138,17 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 if let Some(uncertainty) = &mut uncertainty {
                     uncertainty.doubt = uncertainty.doubt | arriving.doubt;
                 }
-                if let (Some(lights), Some(edge)) = (self.gaps, &mut edge)
+                if let (Some(lights), Some(edge)) = (self.gap_lights, &mut edge)
                     && let Some(footprint) = point.footprint
                 {
                     let (hit, lit) = (point.hit, edge.lit);
-                    let (seen, look) = ((&hit, &footprint), (point.material, point.view));
-                    edge.shadows = edge.shadows + kernel.shadows_at(lights, seen, look, lit, stack);
+                    let (at, view) = ((&hit, &footprint), (point.material, point.view));
+                    edge.shadows = edge.shadows + kernel.shadows_at(lights, at, view, lit, stack);
                 }
                 match point.material {
                     HitMaterial::One(surface) => {
                         let color = packet.color + arriving.color(surface, kernel.plan.show);
-                        packet.color = Vec3::select(point.hit.here, color, packet.color);
+                        packet.color = Vec3::select(point.hit.lanes, color, packet.color);
                     }
                     HitMaterial::Several(mixed) => {
                         mixed.color(kernel.plan, &arriving, &mut packet.color);
@@ -158,24 +158,24 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if self.may_mirror
                 && let Some(mirrors) = self.mirrors(&point)
             {
-                let onwards = self.mirror(&point, mirrors);
-                mirrored = Some(onwards.joined(mirrored));
+                let reflected = self.mirror(&point, mirrors);
+                mirrored = Some(reflected.merged_with(mirrored));
             }
         }
         if kernel.plan.show == Show::Mirrors && self.is_first {
             let dark = Vec3::splat(kernel.splat(0.0));
-            let met = nothing.less(packet.near.number);
+            let met = nothing.less(packet.nearest.number);
             packet.color = Vec3::select(met, packet.color, dark);
         }
-        if let (Some(mirrored), Some(own)) = (&mut mirrored, uncertainty) {
-            mirrored.active = mirrored.active & !own.doubt;
+        if let (Some(mirrored), Some(uncertainty)) = (&mut mirrored, uncertainty) {
+            mirrored.active = mirrored.active & !uncertainty.doubt;
         }
         mirrored.filter(|mirrored| mirrored.active.any())
     }
 
     /// Returns the colour to show instead of the light of a surface; `None` if that is shown.
     #[inline(always)]
-    fn instead(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
+    fn stand_in(&self, packet: &Packet<L>, hit: &Hit<L>) -> Option<Vec3<L>> {
         let kernel = self.kernel;
         match kernel.plan.show {
             Show::Mirrors if self.is_first => Some(Vec3::splat(kernel.splat(0.0))),
@@ -191,7 +191,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 nearest,
                 per_length,
             } => {
-                let t = packet.near.t;
+                let t = packet.nearest.t;
                 let depth = (t - t.like(nearest)) * t.like(per_length);
                 Some(Vec3::splat(kernel.splat(1.0) - depth))
             }
@@ -212,17 +212,17 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let along = normal.dot(view);
         let away = self.kernel.splat(0.0).less(along);
         hit.surface.normal = Vec3::select(away, -normal, normal);
-        let slant = match uncertainty {
-            Some(own) => Some(HitError::new(own, (packet.near.t, along), &hit.surface)),
+        let error = match uncertainty {
+            Some(rays) => Some(HitError::new(rays, (packet.nearest.t, along), &hit.surface)),
             None => None,
         };
         let footprint = match edge {
             Some(edge) => {
-                let (cone, t) = (edge.cone, packet.near.t);
+                let (cone, t) = (edge.cone, packet.nearest.t);
                 let cosine = hit.surface.normal.dot(view);
-                let seen = (cosine, cone.width_at(t));
-                let seen = (t, cosine, self.kernel.grazing(packet.near.number, seen));
-                Some(Footprint::new(cone, seen, hit.surface.curvature))
+                let at = (cosine, cone.width_at(t));
+                let at = (t, cosine, self.kernel.grazing(packet.nearest.number, at));
+                Some(Footprint::new(cone, at, hit.surface.curvature))
             }
             None => None,
         };
@@ -231,29 +231,29 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             material,
             view,
             footprint,
-            slant,
+            error,
         }
     }
 
     /// Returns the material of the hits, and keeps those that respond to light; `None` if none does. The packet gets
-    /// the colours that they have without light, or `instead` if given.
+    /// the colours that they have without light, or `stand_in` if given.
     #[inline(always)]
     fn material<'a>(
         &'a self,
         packet: &mut Packet<L>,
         hit: &mut Hit<L>,
-        (instead, told): (Option<Vec3<L>>, L::Mask),
+        (stand_in, certain): (Option<Vec3<L>>, L::Mask),
         mixed: &'a mut MixedMaterials<L>,
     ) -> Option<HitMaterial<'a, L>> {
         let materials = &self.kernel.plan.materials[..];
         if TREE && hit.is_mixed {
-            hit.here = mixed.set_base(materials, instead, &mut packet.color)?;
+            hit.lanes = mixed.set_base(materials, stand_in, &mut packet.color)?;
             return Some(HitMaterial::Several(mixed));
         }
         let material = &materials[hit.material as usize];
-        let color = instead.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
-        hit.here = hit.here & told;
-        packet.color = Vec3::select(hit.here, color, packet.color);
+        let color = stand_in.unwrap_or(Vec3::broadcast(self.kernel.token, material.base));
+        hit.lanes = hit.lanes & certain;
+        packet.color = Vec3::select(hit.lanes, color, packet.color);
         material.surface.as_ref().map(HitMaterial::One)
     }
 
@@ -263,7 +263,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         match point.material {
             HitMaterial::One(surface) => {
                 let filter = Vec3::broadcast(self.kernel.token, surface.mirror?);
-                Some((point.hit.here, filter))
+                Some((point.hit.lanes, filter))
             }
             HitMaterial::Several(mixed) => mixed.mirror(self.kernel.plan, self.kernel.splat(0.0)),
         }
@@ -271,13 +271,13 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
 
     /// Notes the uncertainty of the rays that mirrors will reflect.
     #[inline(always)]
-    fn doubt_mirrors(&self, point: &ShadingPoint<L>, own: &mut Uncertainty<L>) {
+    fn doubt_mirrors(&self, point: &ShadingPoint<L>, uncertainty: &mut Uncertainty<L>) {
         if self.may_mirror
-            && let Some(slant) = &point.slant
+            && let Some(error) = &point.error
             && let Some((active, filter)) = self.mirrors(point)
         {
             let share = filter.x.max(filter.y).max(filter.z);
-            slant.mirror((active, share), own);
+            error.note_reflection((active, share), uncertainty);
         }
     }
 
@@ -321,25 +321,25 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
         let lowest = if light.may_be_level {
-            kernel.lowest_lit(light, (l, distance), shrink)
+            kernel.min_lit_cosine(light, (l, distance), shrink)
         } else {
             zero
         };
-        let lit_side = hit.here & lowest.less(cosine);
+        let lit_side = hit.lanes & lowest.less(cosine);
         let facing = if kernel.plan.shadows_behind {
-            hit.here
+            hit.lanes
         } else {
             lit_side
         };
-        if let Some(slant) = &point.slant {
+        if let Some(error) = &point.error {
             // Also if nothing was found that may block it: what is found depends on the neighbouring rays.
-            let mut doubt = facing & slant.is_lost;
+            let mut doubt = facing & error.is_lost;
             if !light.may_touch {
-                let shiny = point.material.shiny(hit.here);
+                let shiny = point.material.shiny(hit.lanes);
                 doubt =
-                    doubt | cosine.abs().at_most(lowest) | slant.grazes((cosine, shrink), shiny);
+                    doubt | cosine.abs().at_most(lowest) | error.grazes((cosine, shrink), shiny);
             }
-            arriving.doubt = arriving.doubt | hit.here & doubt;
+            arriving.doubt = arriving.doubt | hit.lanes & doubt;
         }
         if !facing.any() {
             return;
@@ -352,31 +352,31 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         if !candidates.casters.is_empty() || !candidates.thin.is_empty() {
             let (paths, reach) = kernel.towards(hit, light, (l, distance));
             let looks_for_thin = self.looks_for(&candidates.thin);
-            let beside = edge.as_mut().filter(|_| looks_for_thin);
-            let mut thick = None;
-            if let Some((_, footprint)) = &beside {
-                thick = Some(footprint.slipping());
+            let thin_search = edge.as_mut().filter(|_| looks_for_thin);
+            let mut thin_width = None;
+            if let Some((_, footprint)) = &thin_search {
+                thin_width = Some(footprint.thin_width());
             }
-            if candidates.is_umbra && thick.is_none() {
+            if candidates.is_umbra && thin_width.is_none() {
                 return;
             }
-            let ways = (&paths, (reach, shrink), facing, thick);
-            let blocked = self.shadow(point, source, ways, (arriving, stack));
-            if let Some((edge, footprint)) = beside {
+            let shadow_query = (&paths, (reach, shrink), facing, thin_width);
+            let blocked = self.shadow(point, source, shadow_query, (arriving, stack));
+            if let Some((edge, footprint)) = thin_search {
                 // Within the shadow of something wide, that of something thin is not visible.
-                let open = facing & !blocked.by_thick;
+                let unshadowed = facing & !blocked.by_thick;
                 // If the light itself is not visible there, its shadow is not either.
                 let brightness = point.material.brightness(kernel.plan, zero);
                 let brightest = brightness * zero.like(light.intensity);
                 let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
-                let dim = open & lit_side & !visible;
+                let dim = unshadowed & lit_side & !visible;
                 if dim.any() {
-                    let from = (cosine, hit.surface.normal, l - point.view);
-                    visible = visible | dim & point.material.shows(kernel.plan, light, from);
+                    let vectors = (cosine, hit.surface.normal, l - point.view);
+                    visible = visible | dim & point.material.shows(kernel.plan, light, vectors);
                 }
                 let query = ThinQuery {
                     paths: &paths,
-                    active: open & visible,
+                    active: unshadowed & visible,
                     cone: footprint.shadow(distance),
                     in_meshes: footprint.shadow_in_meshes(),
                     spread: footprint.spread(),
@@ -384,7 +384,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                     is_to_light: true,
                 };
                 let near = kernel.thin_distance(&candidates.thin, &query, stack);
-                edge.near = near.min(edge.near);
+                edge.thin_distance = near.min(edge.thin_distance);
             }
             lit = lit & !blocked.anywhere;
             if !lit.any() {
@@ -412,7 +412,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             if point.material.is_sharp() {
                 let off = (normal - half * (one / half.length())).length();
                 let near = point.material.highlight_distance(footprint, off, distance);
-                edge.near = L::select(lit, near.min(edge.near), edge.near);
+                edge.thin_distance =
+                    L::select(lit, near.min(edge.thin_distance), edge.thin_distance);
             }
         }
     }
@@ -423,7 +424,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         &self,
         point: &ShadingPoint<L>,
         source: &LightSource<L::Real>,
-        (paths, (reach, shrink), facing, thick): (&Paths<L>, (L, L), L::Mask, Option<L>),
+        (paths, (reach, shrink), facing, thin_width): (&Paths<L>, (L, L), L::Mask, Option<L>),
         (arriving, stack): (&mut ArrivingLight<L>, &mut Stack<L::Real>),
     ) -> Blocked<L> {
         let (kernel, light) = (self.kernel, source.light);
@@ -433,15 +434,15 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             light: Some(light),
             culled_faces: &light.culled_faces,
         };
-        let onwards = match &point.slant {
+        let blur = match &point.error {
             None => Blur::splat(kernel.token, Blur::NONE),
-            Some(slant) => slant.onwards((reach, shrink)),
+            Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(onwards, (point.slant.is_some(), !light.may_touch));
-        let wanted = (reach, facing, thick);
+        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_touch));
+        let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
-        if point.slant.is_some() {
+        if point.error.is_some() {
             arriving.doubt = arriving.doubt | facing & blocked.doubt;
         }
         blocked

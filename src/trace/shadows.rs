@@ -15,18 +15,18 @@ const SHARED_LIGHT_BITS: usize = 13;
 /// Bits of the mark of a caster. Those of all lights together are exact in any real type.
 const MARK_BITS: u32 = 5;
 /// Bits of what is seen directly; those of what is seen in a mirror are above them.
-const DIRECT: u32 = MARKED_LIGHTS as u32 * MARK_BITS;
+const DIRECT_BITS: u32 = MARKED_LIGHTS as u32 * MARK_BITS;
 
 /// Returns what a light that shines adds to the sum of an edge. Each light whose shadows are noted has a power of
 /// two of its own, below those of all other lights, so that no sum of the others changes its bit.
 #[inline(always)]
 pub fn light_bit(light: usize) -> f64 {
-    let place = if light < LIGHT_BITS {
+    let bit = if light < LIGHT_BITS {
         light
     } else {
         shared_bit(light)
     };
-    f64::from(1_u32 << place)
+    f64::from(1_u32 << bit)
 }
 
 /// Out of line: few scenes have so many lights, and the others are faster without it.
@@ -50,7 +50,7 @@ pub fn weight_of(light: usize) -> Option<f64> {
 /// Combines the shadows of a sample, which are sums of weighted marks: of what is seen directly and in its mirror.
 #[inline(always)]
 pub fn joined(direct: u32, mirrored: u32) -> u32 {
-    direct | mirrored << DIRECT
+    direct | mirrored << DIRECT_BITS
 }
 
 /// Returns whether some light may shine into a cell between the shadows at its corners: all corners are in shadows
@@ -83,7 +83,7 @@ pub fn may_swap_lights([a, b, c, d]: [u32; 4]) -> bool {
 /// Returns, for each mark that is not zero, the highest bit of its field; all other bits are 0.
 #[inline(always)]
 fn nonzero_marks(shadows: u32) -> u32 {
-    const HIGHEST: u32 = {
+    const HIGHEST_BITS: u32 = {
         let (mut bits, mut mark) = (0, 0);
         while mark < 2 * MARKED_LIGHTS {
             bits |= 1 << (mark as u32 * MARK_BITS + MARK_BITS - 1);
@@ -91,8 +91,8 @@ fn nonzero_marks(shadows: u32) -> u32 {
         }
         bits
     };
-    const OTHERS: u32 = HIGHEST - (HIGHEST >> (MARK_BITS - 1));
-    (((shadows & OTHERS) + OTHERS) | shadows) & HIGHEST
+    const LOWER_BITS: u32 = HIGHEST_BITS - (HIGHEST_BITS >> (MARK_BITS - 1));
+    (((shadows & LOWER_BITS) + LOWER_BITS) | shadows) & HIGHEST_BITS
 }
 
 #[cfg(test)]
@@ -114,13 +114,13 @@ mod tests {
     #[test]
     fn no_sum_of_other_lights_is_taken_for_one_that_is_told_apart() {
         let others: f64 = (MARKED_LIGHTS..3000).map(light_bit).sum();
-        for own in 0..MARKED_LIGHTS {
-            let lit = (others + light_bit(own)) as f32 as u32;
-            let told: Vec<u32> = (0..MARKED_LIGHTS).map(|light| lit >> light & 1).collect();
+        for marked in 0..MARKED_LIGHTS {
+            let lit = (others + light_bit(marked)) as f32 as u32;
+            let marked_bits: Vec<u32> = (0..MARKED_LIGHTS).map(|light| lit >> light & 1).collect();
             let expected: Vec<u32> = (0..MARKED_LIGHTS)
-                .map(|light| u32::from(light == own))
+                .map(|light| u32::from(light == marked))
                 .collect();
-            assert_eq!(told, expected);
+            assert_eq!(marked_bits, expected);
         }
     }
 

@@ -48,13 +48,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         let on_flats = self.splat(GRAZING_ON_FLATS);
         let mut grazing = L::select(self.are_planes(numbers), on_flats, self.splat(GRAZING));
         let is_slanted = cosine.abs().less(self.splat(GRAZING));
-        let mut left = (is_slanted & self.may_be_large(numbers, width)).bits();
-        while left != 0 {
-            let number = numbers.lane(left.trailing_zeros() as usize);
-            let here = numbers.same(numbers.like(number));
-            left &= !here.bits();
+        let mut remaining = (is_slanted & self.may_be_large(numbers, width)).bits();
+        while remaining != 0 {
+            let number = numbers.lane(remaining.trailing_zeros() as usize);
+            let lanes = numbers.same(numbers.like(number));
+            remaining &= !lanes.bits();
             if let Some((_, extent)) = self.flat_at(number.to_f64() as usize) {
-                grazing = L::select(here, least_cosine(width, extent), grazing);
+                grazing = L::select(lanes, least_cosine(width, extent), grazing);
             }
         }
         grazing
@@ -63,19 +63,19 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Returns an upper bound of the length of pixels of this width on the primitives with these numbers, where they
     /// were hit along these directions.
     #[inline(always)]
-    pub fn longest_on(self, numbers: L, (hit, directions, width): (L::Mask, Vec3<L>, L)) -> L {
-        let usual = width * width.like_f64(1.0 / GRAZING);
-        let mut length = L::select(hit, usual, self.splat(0.0));
+    pub fn max_length_on(self, numbers: L, (hit, directions, width): (L::Mask, Vec3<L>, L)) -> L {
+        let usual_length = width * width.like_f64(1.0 / GRAZING);
+        let mut length = L::select(hit, usual_length, self.splat(0.0));
         let flat = hit & (self.may_be_large(numbers, width) | self.are_planes(numbers));
-        let mut left = flat.bits();
-        while left != 0 {
-            let number = numbers.lane(left.trailing_zeros() as usize);
-            let here = numbers.same(numbers.like(number));
-            left &= !here.bits();
+        let mut remaining = flat.bits();
+        while remaining != 0 {
+            let number = numbers.lane(remaining.trailing_zeros() as usize);
+            let lanes = numbers.same(numbers.like(number));
+            remaining &= !lanes.bits();
             if let Some((normal, extent)) = self.flat_at(number.to_f64() as usize) {
                 let cosine = directions.like(normal).dot(directions).abs();
-                let own = width / cosine.max(least_cosine(width, extent));
-                length = L::select(here & hit, own, length);
+                let stretched = width / cosine.max(least_cosine(width, extent));
+                length = L::select(lanes & hit, stretched, length);
             }
         }
         length
@@ -85,8 +85,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 /// Returns the cosine below which pixels of a width do not stretch any further on something flat that goes so far.
 #[inline(always)]
 fn least_cosine<L: SimdFloat>(width: L, extent: L::Real) -> L {
-    let whole = width / width.like(extent);
-    whole
+    let full_cosine = width / width.like(extent);
+    full_cosine
         .max(width.like_f64(GRAZING_ON_FLATS))
         .min(width.like_f64(GRAZING))
 }

@@ -12,7 +12,7 @@ use crate::simd::{Real, SimdFloat, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<L: SimdFloat> {
     /// Which rays these are the hits of.
-    pub here: L::Mask,
+    pub lanes: L::Mask,
     /// Point, normal and curvature of the surface.
     pub surface: SurfacePoint<L>,
     /// Index into [`crate::plan::Plan::materials`] of the material of the first hit.
@@ -20,13 +20,13 @@ pub struct Hit<L: SimdFloat> {
     /// Whether other hits have another material.
     pub is_mixed: bool,
     /// The primitives that were hit.
-    own: IgnoredPrimitive<L>,
+    ignored: IgnoredPrimitive<L>,
 }
 
 struct Refine<'a, L: SimdFloat> {
     rays: &'a Ray<L>,
     nearest: &'a Nearest<L>,
-    here: L::Mask,
+    lanes: L::Mask,
     number: usize,
 }
 
@@ -36,31 +36,31 @@ impl<L: SimdFloat> WithPrimitive<L::Real> for Refine<'_, L> {
     #[inline(always)]
     fn run<P: Primitive<L::Real>>(self, primitive: &P) -> Hit<L> {
         Hit {
-            here: self.here,
+            lanes: self.lanes,
             surface: primitive.refine(self.rays, self.nearest.t),
             material: primitive.material(),
             is_mixed: false,
-            own: IgnoredPrimitive::listed(self.number, self.nearest.number),
+            ignored: IgnoredPrimitive::listed(self.number, self.nearest.number),
         }
     }
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Returns the hits on the primitive that the first of the rays in `left` (bit by bit) has hit, or on all that
+    /// Returns the hits on the primitive that the first of the rays in `remaining` (bit by bit) has hit, or on all that
     /// are like it; that ray must have hit something. If there may be several materials, `mixed` becomes these.
     #[inline(always)]
     pub fn refine(
         self,
         rays: &Ray<L>,
         nearest: &Nearest<L>,
-        left: u64,
+        remaining: u64,
         mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
-        let number = nearest.number.lane(left.trailing_zeros() as usize);
+        let number = nearest.number.lane(remaining.trailing_zeros() as usize);
         let refine = Refine {
             rays,
             nearest,
-            here: nearest.number.same(nearest.number.like(number)),
+            lanes: nearest.number.same(nearest.number.like(number)),
             number: number.to_f64() as usize,
         };
         match self.geometry() {
@@ -68,7 +68,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                 let index = refine.number - first;
                 match HitPrimitive::of(geometry, index) {
                     Some(hit_primitive) => {
-                        self.refine_alike(&hit_primitive, (rays, nearest, left), mixed)
+                        self.refine_alike(&hit_primitive, (rays, nearest, remaining), mixed)
                     }
                     None => geometry.primitives.with(index, refine),
                 }
@@ -82,13 +82,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn refine_alike(
         self,
         hit_primitive: &HitPrimitive<L::Real>,
-        (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
+        (rays, nearest, remaining): (&Ray<L>, &Nearest<L>, u64),
         mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
         L::vectorize(
             self.token,
             #[inline(always)]
-            || self.refine_alike_vectorized(hit_primitive, (rays, nearest, left), mixed),
+            || self.refine_alike_vectorized(hit_primitive, (rays, nearest, remaining), mixed),
         )
     }
 
@@ -96,14 +96,14 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn refine_alike_vectorized(
         self,
         hit_primitive: &HitPrimitive<L::Real>,
-        (rays, nearest, left): (&Ray<L>, &Nearest<L>, u64),
+        (rays, nearest, remaining): (&Ray<L>, &Nearest<L>, u64),
         mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
         let mut gathered = Gathered::like(hit_primitive);
-        let mut left = left;
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize;
-            left &= left - 1;
+        let mut remaining = remaining;
+        while remaining != 0 {
+            let lane = remaining.trailing_zeros() as usize;
+            remaining &= remaining - 1;
             if let Some((geometry, first)) = self.geometry()
                 && let number = nearest.number.lane(lane).to_f64() as usize
                 && number >= first
@@ -115,11 +115,11 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         gathered.group_by_material::<L>(self.token, mixed);
         Hit {
-            here: gathered.mask::<L>(self.token),
+            lanes: gathered.mask::<L>(self.token),
             surface: gathered.refine(hit_primitive, rays, nearest.t),
             material: hit_primitive.material,
             is_mixed: mixed.are_several(),
-            own: IgnoredPrimitive::in_tree(nearest.number),
+            ignored: IgnoredPrimitive::in_tree(nearest.number),
         }
     }
 
@@ -142,7 +142,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             RayOrigin::Roundings => point + roundings_along(point, normal),
         };
         let is_at_hit = matches!(self.plan.ray_origin, RayOrigin::AtHit);
-        let ignored = hit.own.only_if(is_at_hit);
+        let ignored = hit.ignored.only_if(is_at_hit);
         let rays = Ray { origin, direction };
         Paths { rays, ignored }
     }
@@ -151,7 +151,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// the surface to be lit, if the light may be level with it or on a ball: infinity where that ball blocks the
     /// light. The light is at this distance; `shrink` is one over that.
     #[inline(always)]
-    pub fn lowest_lit(
+    pub fn min_lit_cosine(
         self,
         light: &PointLight<L::Real>,
         (direction, distance): (Vec3<L>, L),
@@ -182,10 +182,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             // distance.
             let to_light = paths.rays.origin.like(light.position) - paths.rays.origin;
             distance = to_light.length();
-            let way = to_light * (self.splat(1.0) / distance);
+            let exact_direction = to_light * (self.splat(1.0) / distance);
             // From the place of the light itself, no direction leads to it.
             let is_apart = self.splat(0.0).less(distance);
-            paths.rays.direction = Vec3::select(is_apart, way, direction);
+            paths.rays.direction = Vec3::select(is_apart, exact_direction, direction);
         }
         (paths, self.reach_to(light, distance))
     }

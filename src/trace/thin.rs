@@ -4,15 +4,15 @@
 
 use super::candidates::{Candidates, Targets};
 use super::entry_points::EntryPoints;
-use super::footprint::{RayCone, pixels};
+use super::footprint::{RayCone, distance_in_pixels};
 use super::intersect::Kernel;
 use super::paths::Paths;
 use super::scan::{Test, TreeScan, scan_lists};
-use super::thin_cull::least_pixels;
+use super::thin_cull::small_mesh_pixels;
 use super::thin_margin::ThinMargin;
 use super::thresholds::{
-    CROWD, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_WHEN_CROWDED, ONE_THING,
-    SLIPPING, WIDEST_TO_LIGHTS,
+    CROWDED_OBJECTS, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_TO_LIGHTS,
+    MAX_SPREAD_WHEN_CROWDED, MERGED_SIZE, THIN_WIDTH,
 };
 use super::walk::Stack;
 use crate::plan::PackedMesh;
@@ -32,9 +32,10 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     /// have to be told apart, for ever less of a shadow.
     pub in_meshes: RayCone<L>,
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
-    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than [`MAX_SPREAD_INTO_MESHES`]
-    /// do not look into meshes, and rays to a light with more than [`WIDEST_TO_LIGHTS`] look for nothing. In crowded
-    /// scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and other rays above [`MAX_SPREAD_WHEN_CROWDED`].
+    /// mirrors make that more. The limits are multiples of the camera's own: rays with more than
+    /// [`MAX_SPREAD_INTO_MESHES`] do not look into meshes, and rays to a light with more than [`MAX_SPREAD_TO_LIGHTS`]
+    /// look for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and
+    /// other rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
     pub reach: L,
@@ -43,7 +44,7 @@ pub struct ThinQuery<'a, L: SimdFloat> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
-    /// Returns how many pixels away from the rays the nearest primitive is that is narrower there than [`SLIPPING`]
+    /// Returns how many pixels away from the rays the nearest primitive is that is narrower there than [`THIN_WIDTH`]
     /// pixels; infinity for none.
     #[inline(always)]
     pub fn thin_distance(
@@ -53,17 +54,19 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         stack: &mut Stack<L::Real>,
     ) -> L {
         let spread = self.plan.view.spread();
-        let narrow = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
-        let widest = match (self.plan.things < CROWD, query.is_to_light) {
-            (true, true) => spread * L::Real::from_f64(WIDEST_TO_LIGHTS),
+        let mesh_spread_limit = spread * L::Real::from_f64(MAX_SPREAD_INTO_MESHES);
+        let spread_limit = match (self.plan.things < CROWDED_OBJECTS, query.is_to_light) {
+            (true, true) => spread * L::Real::from_f64(MAX_SPREAD_TO_LIGHTS),
             (true, false) => L::Real::INFINITY,
-            (false, true) => narrow,
+            (false, true) => mesh_spread_limit,
             (false, false) => spread * L::Real::from_f64(MAX_SPREAD_WHEN_CROWDED),
         };
-        let is_narrow = query.spread.at_most(self.splat(0.0).like(narrow));
-        let is_looking = query.spread.at_most(self.splat(0.0).like(widest));
+        let may_enter_meshes = query
+            .spread
+            .at_most(self.splat(0.0).like(mesh_spread_limit));
+        let may_search = query.spread.at_most(self.splat(0.0).like(spread_limit));
         let query = &ThinQuery {
-            active: query.active & is_looking,
+            active: query.active & may_search,
             ..*query
         };
         let mut test = ThinTest::new(query, true, self.infinity());
@@ -79,12 +82,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         let exact = Blur::splat(self.token, Blur::NONE);
         // Separately, since boxes are widened by the widest pixel of all rays.
-        for (looking, enters) in [(is_narrow, true), (!is_narrow, false)] {
-            let looking = query.active & looking;
-            if looking.any()
-                && let Some(tree_scan) = self.tree_scan(targets, (looking, exact))
+        for (lanes, enters_meshes) in [(may_enter_meshes, true), (!may_enter_meshes, false)] {
+            let lanes = query.active & lanes;
+            if lanes.any()
+                && let Some(tree_scan) = self.tree_scan(targets, (lanes, exact))
             {
-                best = self.thin_in(&tree_scan, (query, enters), best, stack);
+                best = self.thin_distance_in_tree(&tree_scan, (query, enters_meshes), best, stack);
             }
         }
         L::select(query.active, best, self.infinity())
@@ -93,10 +96,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Returns `best` or, if that is nearer, the distance in pixels of the nearest thin thing in the tree; in meshes
     /// as well if they are entered.
     #[inline(never)]
-    fn thin_in(
+    fn thin_distance_in_tree(
         self,
         tree_scan: &TreeScan<L>,
-        (query, enters): (&ThinQuery<L>, bool),
+        (query, enters_meshes): (&ThinQuery<L>, bool),
         best: L,
         stack: &mut Stack<L::Real>,
     ) -> L {
@@ -105,13 +108,13 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             #[inline(always)]
             || {
                 let active = tree_scan.active;
-                let (zero, never) = (self.splat(0.0), self.splat(-1.0) * self.infinity());
+                let (zero, minus_infinity) = (self.splat(0.0), self.splat(-1.0) * self.infinity());
                 let widest = |width: L| L::select(active, width, zero).greatest();
-                let spread = L::select(active, query.cone.spread, never).greatest();
+                let spread = L::select(active, query.cone.spread, minus_infinity).greatest();
                 let margin = ThinMargin {
                     narrowing: L::Real::ZERO.max(-spread),
-                    least: widest(query.in_meshes.width),
-                    ..ThinMargin::slipping(widest(query.cone.width), L::Real::ZERO.max(spread))
+                    min_width: widest(query.in_meshes.width),
+                    ..ThinMargin::new(widest(query.cone.width), L::Real::ZERO.max(spread))
                 };
                 let tree_scan = TreeScan {
                     margin,
@@ -120,7 +123,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                     ..*tree_scan
                 };
                 let query = ThinQuery { active, ..*query };
-                let mut test = ThinTest::new(&query, enters, best);
+                let mut test = ThinTest::new(&query, enters_meshes, best);
                 tree_scan.scan(query.paths, stack, &mut test);
                 L::select(active, test.best, best)
             },
@@ -134,7 +137,7 @@ struct ThinTest<'a, L: SimdFloat> {
     /// How many pixels away the nearest one is.
     best: L,
     /// Whether the rays look into meshes, and not only at small ones as a whole.
-    enters: bool,
+    enters_meshes: bool,
     /// While a mesh is tested, the rays for which its parts count.
     face_lanes: L::Mask,
     /// The width of a pixel around what is treated as one thing.
@@ -160,12 +163,12 @@ struct BallApproach<L> {
 impl<'a, L: SimdFloat> ThinTest<'a, L> {
     /// Creates a test for thin things that are fewer than `best` pixels away.
     #[inline(always)]
-    fn new(query: &'a ThinQuery<'a, L>, enters: bool, best: L) -> Self {
+    fn new(query: &'a ThinQuery<'a, L>, enters_meshes: bool, best: L) -> Self {
         let all = query.active | !query.active;
         Self {
             query,
             best,
-            enters,
+            enters_meshes,
             face_lanes: all,
             cone: query.cone,
             merged_lanes: 0,
@@ -174,7 +177,12 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
     }
 
     #[inline(always)]
-    fn passed(&self, center: Vec3<L::Real>, radius: L::Real, paths: &Paths<L>) -> BallApproach<L> {
+    fn approach_ball(
+        &self,
+        center: Vec3<L::Real>,
+        radius: L::Real,
+        paths: &Paths<L>,
+    ) -> BallApproach<L> {
         let x = paths.rays.origin - paths.rays.origin.like(center);
         let along = -paths.rays.direction.dot(x);
         let off = (x + paths.rays.direction * along).length();
@@ -194,17 +202,17 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let zero = to.like(L::Real::ZERO);
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
-        let thin = size.less(width * to.like_f64(SLIPPING)) & zero.less(to) & is_before;
+        let thin = size.less(width * to.like_f64(THIN_WIDTH)) & zero.less(to) & is_before;
         (thin & self.face_lanes & self.unmerged_lanes, width)
     }
 
-    /// Notes a ball that is `beside` away from the rays, where it counts.
+    /// Notes a ball that is `distance` away from the rays, where it counts.
     #[inline(always)]
-    fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, beside: L) {
+    fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, distance: L) {
         let width = ball.width;
         // Whether a ray hits what is inside does not matter: it passes closely enough.
-        let beside = beside.max(width * width.like_f64(LEAST_NOTED_DISTANCE));
-        let near = pixels(counts, beside, width);
+        let distance = distance.max(width * width.like_f64(LEAST_NOTED_DISTANCE));
+        let near = distance_in_pixels(counts, distance, width);
         self.best = self.best.min(near);
     }
 }
@@ -221,18 +229,18 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         active: L::Mask,
     ) -> Option<L::Mask> {
         let (center, radius) = mesh.bvh.bounds.ball();
-        let small = least_pixels(mesh);
+        let small = small_mesh_pixels(mesh);
         if widest * small <= radius + radius {
-            if !self.enters {
+            if !self.enters_meshes {
                 return None;
             }
             self.cone = self.query.in_meshes;
             return Some(active);
         }
-        let ball = self.passed(center, radius, paths);
+        let ball = self.approach_ball(center, radius, paths);
         let is_small = (ball.radius + ball.radius).less(ball.width * ball.width.like(small));
         // The box reaches farther than the mesh: rays through its corners pass the mesh.
-        let beside = ball.off - ball.off.like(mesh.reach);
+        let distance = ball.off - ball.off.like(mesh.reach);
         let is_before = (ball.along - ball.radius).less(self.query.reach + ball.width);
         let is_ahead = ball
             .width
@@ -241,46 +249,48 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         // Rays for which the mesh is not thin enough, or which do not come close enough to its box, do not count:
         // they are only here because of other rays of the packet.
         let thickness = ball.width.like(mesh.bvh.thinnest);
-        let is_thin = thickness.less(ball.width * ball.width.like_f64(SLIPPING));
+        let is_thin = thickness.less(ball.width * ball.width.like_f64(THIN_WIDTH));
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
         let is_close = entry.less(self.query.reach + ball.width);
         let counts = is_small & is_thin & is_before & is_ahead & is_close & self.unmerged_lanes;
-        self.note(&ball, counts, beside);
-        let others = active & !is_small;
-        if !self.enters || !others.any() {
+        self.note(&ball, counts, distance);
+        let larger = active & !is_small;
+        if !self.enters_meshes || !larger.any() {
             return None;
         }
         self.face_lanes = !is_small;
         self.cone = self.query.in_meshes;
-        Some(others)
+        Some(larger)
     }
 
     #[inline(always)]
-    fn settle(
+    fn test_merged_box(
         &mut self,
         (center, radius): (Vec3<L::Real>, L::Real),
         thickness: L::Real,
         paths: &Paths<L>,
         active: L::Mask,
     ) -> u64 {
-        let ball = self.passed(center, radius, paths);
+        let ball = self.approach_ball(center, radius, paths);
         let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
-        let is_one = (ball.radius + ball.radius).less(width * width.like_f64(ONE_THING));
-        let is_thin = width.like(thickness).less(width * width.like_f64(SLIPPING));
-        let is_there = zero.less(ball.along) & ball.along.less(self.query.reach + width);
-        let counts = is_one & is_thin & is_there & self.face_lanes & self.unmerged_lanes;
+        let is_merged = (ball.radius + ball.radius).less(width * width.like_f64(MERGED_SIZE));
+        let is_thin = width
+            .like(thickness)
+            .less(width * width.like_f64(THIN_WIDTH));
+        let is_in_reach = zero.less(ball.along) & ball.along.less(self.query.reach + width);
+        let counts = is_merged & is_thin & is_in_reach & self.face_lanes & self.unmerged_lanes;
         self.note(&ball, counts, ball.off - ball.radius);
-        (is_one | !active).bits()
+        (is_merged | !active).bits()
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, merged_lanes: u64) -> u64 {
+    fn exclude_lanes(&mut self, merged_lanes: u64) -> u64 {
         let before = self.merged_lanes;
         if merged_lanes != before {
-            let is_out = |lane: usize| f64::from(u8::from(merged_lanes >> lane & 1 == 1));
+            let is_excluded = |lane: usize| f64::from(u8::from(merged_lanes >> lane & 1 == 1));
             let token = self.best.token();
-            let out = L::from_fn(token, |lane| L::Real::from_f64(is_out(lane)));
-            self.unmerged_lanes = out.less(out.like(L::Real::ONE));
+            let excluded = L::from_fn(token, |lane| L::Real::from_f64(is_excluded(lane)));
+            self.unmerged_lanes = excluded.less(excluded.like(L::Real::ONE));
             self.merged_lanes = merged_lanes;
         }
         before
@@ -330,8 +340,10 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let mut counts = counts & active;
         // A curved surface surrounds the rays that start on it.
         if P::IS_CURVED {
-            counts = counts & !paths.ignored.is(number);
+            counts = counts & !paths.ignored.starts_on(number);
         }
-        self.best = self.best.min(pixels(counts, approach.distance, width));
+        self.best = self
+            .best
+            .min(distance_in_pixels(counts, approach.distance, width));
     }
 }

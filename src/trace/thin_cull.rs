@@ -3,25 +3,25 @@
 
 use super::bundle::Shaft;
 use super::thin_margin::ThinMargin;
-use super::thresholds::{CROWDED, ONE_THING, SMALL_MESH_PIXELS};
+use super::thresholds::{CROWDED_FACES_PER_PIXEL, MERGED_SIZE, SMALL_MESH_PIXELS};
 use crate::plan::{Bvh, Child, GROUP, Geometry, PackedMesh};
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
 
 /// Number of nodes that are examined; if that is not enough, something thin may be there.
-const MOST_NODES: u32 = 32;
+const MAX_NODES: u32 = 32;
 
 /// Returns the size in pixels below which a mesh may slip between samples as a whole: with that many faces per
 /// pixel, testing each is too slow.
 #[inline(always)]
-pub fn least_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
-    let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED);
+pub fn small_mesh_pixels<R: Real>(mesh: &PackedMesh<R>) -> R {
+    let faces = R::from_f64(mesh.triangles.len() as f64 / CROWDED_FACES_PER_PIXEL);
     faces.sqrt().max(R::from_f64(SMALL_MESH_PIXELS))
 }
 
 /// Returns whether any ray of the shaft may pass close to something thin in the trees, at any distance.
 #[inline(never)]
-pub fn may_slip<L: SimdFloat>(
+pub fn may_pass_thin<L: SimdFloat>(
     token: L::Token,
     geometry: &Geometry<L::Real>,
     shaft: &Shaft<L::Real>,
@@ -31,28 +31,28 @@ pub fn may_slip<L: SimdFloat>(
         token,
         #[inline(always)]
         || {
-            let mut left = MOST_NODES;
-            let look = (shaft, margin, &mut left);
+            let mut nodes_left = MAX_NODES;
+            let query = (shaft, margin, &mut nodes_left);
             is_close::<L>(
                 token,
                 &geometry.bvh,
-                look,
+                query,
                 #[inline(always)]
-                |member, width, left| {
+                |member, width, nodes_left| {
                     let first = geometry.primitives.len();
                     let Some(mesh) = (member as usize).checked_sub(first) else {
                         return true;
                     };
                     let instance = &geometry.meshes[mesh];
                     let (_, radius) = instance.mesh.bvh.bounds.ball();
-                    if radius + radius < width * least_pixels(&instance.mesh) {
+                    if radius + radius < width * small_mesh_pixels(&instance.mesh) {
                         return true;
                     }
-                    let look = (&shaft.seen_from(instance.centre), margin, left);
+                    let query = (&shaft.seen_from(instance.centre), margin, nodes_left);
                     is_close::<L>(
                         token,
                         &instance.mesh.bvh,
-                        look,
+                        query,
                         #[inline(always)]
                         |_, _, _| true,
                     )
@@ -62,37 +62,37 @@ pub fn may_slip<L: SimdFloat>(
     )
 }
 
-/// Returns whether any ray may pass close to a thin member of a tree for which `is_so` holds. That gets the largest
+/// Returns whether any ray may pass close to a thin member of a tree for which `accepts` holds. That gets the largest
 /// width of a pixel there, and the number of nodes that are left to examine.
 #[inline(always)]
 fn is_close<L: SimdFloat>(
     token: L::Token,
     bvh: &Bvh<L::Real>,
-    (shaft, margin, left): (&Shaft<L::Real>, &ThinMargin<L::Real>, &mut u32),
-    is_so: impl Fn(u32, L::Real, &mut u32) -> bool,
+    (shaft, margin, nodes_left): (&Shaft<L::Real>, &ThinMargin<L::Real>, &mut u32),
+    accepts: impl Fn(u32, L::Real, &mut u32) -> bool,
 ) -> bool {
-    let mut stack = [0; MOST_NODES as usize];
+    let mut stack = [0; MAX_NODES as usize];
     let mut count = 1;
     while 0 < count {
         count -= 1;
         let Some(node) = bvh.nodes.get(stack[count] as usize) else {
             return false;
         };
-        if *left == 0 {
+        if *nodes_left == 0 {
             return true;
         }
-        *left -= 1;
+        *nodes_left -= 1;
         let mut widths = [L::Real::ZERO; GROUP];
-        let mut bits = shaft.grazes::<L>(token, node, L::Real::INFINITY, margin, &mut widths);
+        let mut bits = shaft.meets_thin::<L>(token, node, L::Real::INFINITY, margin, &mut widths);
         while bits != 0 {
             let index = bits.trailing_zeros() as usize;
             bits &= bits - 1;
             match node.child(index) {
-                Child::Member(member) if is_so(member, widths[index], left) => return true,
+                Child::Member(member) if accepts(member, widths[index], nodes_left) => return true,
                 Child::Member(_) => {}
                 Child::Node(_) if count == stack.len() => return true,
                 // Its contents are treated as one thing, and not told apart.
-                Child::Node(_) if is_one(node.bounds(index), widths[index]) => return true,
+                Child::Node(_) if is_merged(node.bounds(index), widths[index]) => return true,
                 Child::Node(inner) => {
                     stack[count] = inner;
                     count += 1;
@@ -105,9 +105,9 @@ fn is_close<L: SimdFloat>(
 
 /// Returns whether the contents of a box may be treated as one thing where pixels are this wide.
 #[inline(always)]
-fn is_one<R: Real>(bounds: BoundingBox<R>, width: R) -> bool {
+fn is_merged<R: Real>(bounds: BoundingBox<R>, width: R) -> bool {
     let (_, radius) = bounds.ball();
-    radius + radius < width * R::from_f64(ONE_THING)
+    radius + radius < width * R::from_f64(MERGED_SIZE)
 }
 
 #[cfg(test)]
@@ -148,12 +148,12 @@ mod tests {
         let geometry = plan.geometry.as_deref().expect("meshes");
         let is_close = |x: f64, width: f64| {
             // Has a part along each axis, so that the rays have something in common along all of them.
-            let way = DVec3::new(0.3, 0.3, -1.0);
-            let start = DVec3::new(x, 0.0, 0.0) - way * 300.0 - plan.centre;
+            let direction = DVec3::new(0.3, 0.3, -1.0);
+            let start = DVec3::new(x, 0.0, 0.0) - direction * 300.0 - plan.centre;
             let origins = BoundingBox::around(&[Vec3::from_dvec3(start)]).widened(4.0);
-            let ways = BoundingBox::around(&[Vec3::from_dvec3(way)]).widened(0.01);
-            let margin = ThinMargin::slipping(width, 0.0);
-            may_slip::<f64>((), geometry, &Shaft::of(&origins, &ways), &margin)
+            let directions = BoundingBox::around(&[Vec3::from_dvec3(direction)]).widened(0.01);
+            let margin = ThinMargin::new(width, 0.0);
+            may_pass_thin::<f64>((), geometry, &Shaft::of(&origins, &directions), &margin)
         };
         // The cylinder is 0.2 thick: a little less than two of the wider pixels, and more than two of the others.
         for (x, is_thin) in [(0.0, false), (100.0, true), (200.0, false)] {

@@ -1,11 +1,11 @@
 //! How far beside rays boxes are searched for thin things.
 
-use super::thresholds::SLIPPING;
+use super::thresholds::THIN_WIDTH;
 use crate::primitive::CAUTION;
 use crate::simd::{Real, SimdFloat};
 
 /// How far before a box, in widths of a pixel, a ray may pass what is in it: discs the farthest.
-const PASSED_BEFORE: f64 = 4.0;
+const APPROACH_WIDTHS: f64 = 4.0;
 
 /// Upper bound of the width of a pixel around rays, and how thick the things are that are looked for.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,23 +15,23 @@ pub struct ThinMargin<R> {
     /// Growth of the width at distance 1, in scene units per scene unit.
     pub spread: R,
     /// Thickness in widths of a pixel below which things are looked for.
-    pub thickest: R,
+    pub max_thickness: R,
     /// How much narrower a pixel becomes at distance 1, at least, if it narrows along all of the rays; else 0.
     pub narrowing: R,
     /// Least width in spite of narrowing, in scene units.
-    pub least: R,
+    pub min_width: R,
 }
 
 impl<R: Real> ThinMargin<R> {
     /// Creates the margin for things that may slip between samples, where pixels are this wide.
     #[inline(always)]
-    pub fn slipping(width: R, spread: R) -> Self {
+    pub fn new(width: R, spread: R) -> Self {
         Self {
             width,
             spread,
-            thickest: R::from_f64(SLIPPING),
+            max_thickness: R::from_f64(THIN_WIDTH),
             narrowing: R::ZERO,
-            least: width,
+            min_width: width,
         }
     }
 
@@ -48,15 +48,16 @@ impl<R: Real> ThinMargin<R> {
     /// given the width without narrowing. What is in the box may be passed some widths before it.
     #[inline(always)]
     pub fn narrowed<L: SimdFloat<Real = R>>(&self, width: L, near: L) -> L {
-        let sure = near * near.like_f64(1.0 - CAUTION) - width * near.like_f64(PASSED_BEFORE);
-        let narrowed = width - sure.max(near.like(R::ZERO)) * near.like(self.narrowing);
-        narrowed.max(near.like(self.least))
+        let certain_distance =
+            near * near.like_f64(1.0 - CAUTION) - width * near.like_f64(APPROACH_WIDTHS);
+        let narrowed = width - certain_distance.max(near.like(R::ZERO)) * near.like(self.narrowing);
+        narrowed.max(near.like(self.min_width))
     }
 
     /// Returns how far something may be from where rays start that go as far as `reach`, where a pixel is this wide.
     #[inline(always)]
     pub fn end<L: SimdFloat<Real = R>>(&self, reach: L, width: L) -> L {
         // Round things count up to their own size behind the end.
-        reach + width * reach.like(self.thickest + R::ONE)
+        reach + width * reach.like(self.max_thickness + R::ONE)
     }
 }

@@ -42,10 +42,10 @@ const PIXELS_IN_SQUARES: u64 = 128;
 const PIECES_PER_THREAD: usize = 128;
 
 /// Most pixels of a strip: 16 MB as levels, or 48 MB as light. Smaller pictures are one strip.
-const STRIP: usize = 1 << 22;
+const MAX_STRIP_PIXELS: usize = 1 << 22;
 /// The rows of a strip are a multiple of this: an EXR file is written in squares with this side, and a square is
 /// asked for row by row.
-const SQUARE: usize = 64;
+const EXR_SQUARE: usize = 64;
 
 /// A picture of a scene, planned in the real type that it needs.
 #[derive(Debug)]
@@ -56,24 +56,24 @@ pub struct Tracer {
     tile: usize,
     in_squares: bool,
     /// Rows of a strip.
-    strip: usize,
+    strip_rows: usize,
     /// The part that is traced; `None` for all of the picture.
     region: Option<Region>,
     sampling: Sampling,
     level: Level,
-    plan: PlanOf,
+    plan: AnyPlan,
     /// Traces samples again that single precision leaves in doubt.
-    exact: Option<DoublePrecision>,
+    retracer: Option<DoublePrecision>,
     workspace_pool: WorkspacePool,
 }
 
 #[derive(Debug)]
-enum PlanOf {
+enum AnyPlan {
     Single(Box<Plan<f32>>),
     Double(Box<Plan<f64>>),
 }
 
-impl PlanOf {
+impl AnyPlan {
     /// The number of bounded primitives.
     fn bounded(&self) -> u64 {
         let count = match self {
@@ -101,27 +101,27 @@ impl Tracer {
         let Planner { single, double } = planner;
         let mut in_single = || Box::new(Plan::new(scene, request, single));
         let mut in_double = || Box::new(Plan::new(scene, request, double));
-        let (plan, exact) = if is_double {
-            (PlanOf::Double(in_double()), None)
+        let (plan, retracer) = if is_double {
+            (AnyPlan::Double(in_double()), None)
         } else if is_filtered {
-            let (mut plan, exact) = rayon::join(in_single, in_double);
+            let (mut plan, double_plan) = rayon::join(in_single, in_double);
             plan.doubt();
             (
-                PlanOf::Single(plan),
-                Some(DoublePrecision::new(exact, level)),
+                AnyPlan::Single(plan),
+                Some(DoublePrecision::new(double_plan, level)),
             )
         } else {
-            (PlanOf::Single(in_single()), None)
+            (AnyPlan::Single(in_single()), None)
         };
         let pixels = request.pixels();
         let is_sparse = plan.bounded() * PIXELS_PER_PRIMITIVE <= pixels;
         let side = if is_sparse { LARGE_TILE } else { SMALL_TILE };
         let (width, height) = (request.width as usize, request.height as usize);
-        let strip = STRIP / width.max(1) / SQUARE * SQUARE;
+        let strip_rows = MAX_STRIP_PIXELS / width.max(1) / EXR_SQUARE * EXR_SQUARE;
         Self {
             width,
             height,
-            strip: strip.clamp(SQUARE, height.max(SQUARE)),
+            strip_rows: strip_rows.clamp(EXR_SQUARE, height.max(EXR_SQUARE)),
             tile: match (request.aspect, request.sampling) {
                 (Aspect::Cost, _) => COST_TILE,
                 // A tile has one more corner in a row than pixels: its corners fill whole packets.
@@ -133,7 +133,7 @@ impl Tracer {
             sampling: request.sampling,
             level,
             plan,
-            exact,
+            retracer,
             workspace_pool: WorkspacePool::default(),
         }
     }
@@ -151,14 +151,14 @@ impl Tracer {
     /// The number of rows of a strip. Pixels send no messages to those of other strips, so that strips may be traced
     /// separately.
     pub fn strip(&self) -> usize {
-        self.strip
+        self.strip_rows
     }
 
     /// The real type and the number of lanes, for example `f32×16 avx2`.
     pub fn lanes(&self) -> String {
         match self.plan {
-            PlanOf::Single(_) => self.level.lanes_of::<f32>(),
-            PlanOf::Double(_) => self.level.lanes_of::<f64>(),
+            AnyPlan::Single(_) => self.level.lanes_of::<f32>(),
+            AnyPlan::Double(_) => self.level.lanes_of::<f64>(),
         }
     }
 
@@ -173,10 +173,10 @@ impl Tracer {
         pass: Pass,
         control: &RenderControl,
     ) -> Option<Rays> {
-        let strips = pixels.chunks_mut((self.strip * self.width).max(1));
+        let strips = pixels.chunks_mut((self.strip_rows * self.width).max(1));
         let mut rays = Rays::default();
         for (index, pixels) in strips.enumerate() {
-            rays += self.trace_rows(pixels, index * self.strip, pass, control)?;
+            rays += self.trace_rows(pixels, index * self.strip_rows, pass, control)?;
         }
         Some(rays)
     }
@@ -200,14 +200,14 @@ impl Tracer {
         control: &RenderControl,
     ) -> Option<Rays> {
         match &self.plan {
-            PlanOf::Single(plan) => self.pass_of(plan, pixels, first, pass, control),
-            PlanOf::Double(plan) => self.pass_of(plan, pixels, first, pass, control),
+            AnyPlan::Single(plan) => self.trace_pass(plan, pixels, first, pass, control),
+            AnyPlan::Double(plan) => self.trace_pass(plan, pixels, first, pass, control),
         }
     }
 
     /// Returns the number of columns in a piece if `threads` threads trace `rows` rows: whole rows of tiles, if that
     /// is enough pieces for all threads to end at nearly the same time.
-    fn columns_of_pieces(&self, rows: usize, threads: usize) -> usize {
+    fn piece_width(&self, rows: usize, threads: usize) -> usize {
         let bands = rows.div_ceil(self.tile).max(1);
         let pieces = (threads * PIECES_PER_THREAD).div_ceil(bands);
         self.width.div_ceil(self.tile).div_ceil(pieces).max(1) * self.tile
@@ -215,11 +215,11 @@ impl Tracer {
 
     /// Returns the pieces that the picture is divided into for a number of threads.
     fn pieces(&self, threads: usize) -> impl Iterator<Item = Region> {
-        let piece = self.columns_of_pieces(self.height, threads);
+        let piece_width = self.piece_width(self.height, threads);
         (0..self.height).step_by(self.tile).flat_map(move |top| {
-            let starts = (0..self.width).step_by(piece);
+            let starts = (0..self.width).step_by(piece_width);
             starts.map(move |left| Region {
-                columns: (left, (left + piece).min(self.width)),
+                columns: (left, (left + piece_width).min(self.width)),
                 rows: (top, (top + self.tile).min(self.height)),
             })
         })
@@ -229,13 +229,13 @@ impl Tracer {
     /// thread.
     pub fn time_pieces(&self, threads: usize) -> Vec<Duration> {
         match &self.plan {
-            PlanOf::Single(plan) => self.time_pieces_of(plan, threads),
-            PlanOf::Double(plan) => self.time_pieces_of(plan, threads),
+            AnyPlan::Single(plan) => self.time_pieces_of(plan, threads),
+            AnyPlan::Double(plan) => self.time_pieces_of(plan, threads),
         }
     }
 
     fn time_pieces_of<R: SimdReal>(&self, plan: &Plan<R>, threads: usize) -> Vec<Duration> {
-        let seen = Candidates::all_seen(plan);
+        let candidates = Candidates::all_seen(plan);
         let samples = (Grid::ALL, self.sampling);
         let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
         let messages = self.edge_messages(0..self.height, self.sampling);
@@ -246,23 +246,23 @@ impl Tracer {
             let since = Instant::now();
             // Never stopped.
             let control = RenderControl::default();
-            let notes = (BandMessages::all(&messages), &control);
-            let _ = self.piece((plan, &seen), (place, rows), samples, notes);
+            let context = (BandMessages::all(&messages), &control);
+            let _ = self.trace_piece((plan, &candidates), (place, rows), samples, context);
             since.elapsed()
         };
         self.pieces(threads).map(time).collect()
     }
 
     /// Traces a piece on this thread.
-    fn piece<R: SimdReal, P: Pixel>(
+    fn trace_piece<R: SimdReal, P: Pixel>(
         &self,
-        (plan, seen): (&Plan<R>, &Candidates),
+        (plan, candidates): (&Plan<R>, &Candidates),
         (place, pixels): (Region, Vec<&mut [P]>),
         (grid, sampling): (Grid, Sampling),
         (messages, control): (BandMessages, &RenderControl),
     ) -> Option<Rays> {
         // Outside of the kernel, which is left alone; pieces are short compared with any pause.
-        control.wait();
+        control.wait_while_paused();
         let mut canvas = Pixels {
             place,
             rows: pixels,
@@ -270,7 +270,7 @@ impl Tracer {
         };
         self.level.run(Band {
             plan,
-            seen,
+            candidates,
             tile: self.tile,
             in_squares: self.in_squares,
             region: self.region,
@@ -280,13 +280,16 @@ impl Tracer {
             grid,
             sampling,
             messages,
-            reference: self.exact.as_ref().map(|exact| exact as &dyn Retracer),
+            retracer: self
+                .retracer
+                .as_ref()
+                .map(|retracer| retracer as &dyn Retracer),
             workspace_pool: &self.workspace_pool,
             control,
         })
     }
 
-    fn pass_of<R: SimdReal, P: Pixel>(
+    fn trace_pass<R: SimdReal, P: Pixel>(
         &self,
         plan: &Plan<R>,
         pixels: &mut [P],
@@ -294,14 +297,14 @@ impl Tracer {
         pass: Pass,
         control: &RenderControl,
     ) -> Option<Rays> {
-        let seen = Candidates::all_seen(plan);
+        let candidates = Candidates::all_seen(plan);
         let (grid, sampling) = match pass {
             Pass::Whole => (Grid::ALL, self.sampling),
             Pass::Centres(grid) => (grid, Sampling::Centres),
         };
         let rows = pixels.len() / self.width.max(1);
         let mut messages = self.edge_messages(first..first + rows, sampling);
-        let piece = self.columns_of_pieces(rows, Threads::current());
+        let piece_width = self.piece_width(rows, Threads::current());
         let bands = pixels
             .par_chunks_mut(self.width * self.tile)
             .with_max_len(1)
@@ -309,13 +312,18 @@ impl Tracer {
         let trace = |(index, pixels): (usize, &mut [P])| {
             let top = first + index * self.tile;
             let rows = (top, top + pixels.len() / self.width);
-            let pieces = in_pieces(pixels, (self.width, piece)).into_par_iter();
+            let pieces = in_pieces(pixels, (self.width, piece_width)).into_par_iter();
             let pieces = pieces.enumerate().map(|(index, pixels)| {
-                let left = index * piece;
-                let columns = (left, (left + piece).min(self.width));
+                let left = index * piece_width;
+                let columns = (left, (left + piece_width).min(self.width));
                 let place = Region { columns, rows };
-                let notes = (BandMessages::all(&messages), control);
-                self.piece((plan, &seen), (place, pixels), (grid, sampling), notes)
+                let context = (BandMessages::all(&messages), control);
+                self.trace_piece(
+                    (plan, &candidates),
+                    (place, pixels),
+                    (grid, sampling),
+                    context,
+                )
             });
             pieces.try_reduce(Rays::default, |a, b| Some(a + b))
         };
@@ -327,8 +335,8 @@ impl Tracer {
             if received.is_empty() || plan.show == Show::Cost {
                 return Some(rays);
             }
-            let (received, seen) = ((&messages, received), (plan, &seen));
-            rays += self.pass_notified(seen, (pixels, first), received, control)?;
+            let (received, targets) = ((&messages, received), (plan, &candidates));
+            rays += self.pass_notified(targets, (pixels, first), received, control)?;
         }
     }
 
@@ -343,7 +351,7 @@ impl Tracer {
     /// Traces the pixels again that have received a message across the border of a tile.
     fn pass_notified<R: SimdReal, P: Pixel>(
         &self,
-        seen: (&Plan<R>, &Candidates),
+        targets: (&Plan<R>, &Candidates),
         (pixels, first): (&mut [P], usize),
         (messages, received): (&EdgeMessages, BTreeSet<[usize; 2]>),
         control: &RenderControl,
@@ -360,18 +368,18 @@ impl Tracer {
             let top = first + index * self.tile;
             let rows = (top, top + pixels.len() / self.width);
             let mut rays = Rays::default();
-            for (&[_, across], those) in tiles.range([index, 0]..[index + 1, 0]) {
-                let left = across * self.tile;
+            for (&[_, tile_column], notified) in tiles.range([index, 0]..[index + 1, 0]) {
+                let left = tile_column * self.tile;
                 let columns = (left, (left + self.tile).min(self.width));
                 let part = pixels.chunks_mut(self.width);
                 let part = part.map(|row| &mut row[columns.0..columns.1]).collect();
-                let place = (Region { columns, rows }, part);
+                let target = (Region { columns, rows }, part);
                 let messages = BandMessages {
                     messages,
-                    only_pixels: Some(those),
+                    only_pixels: Some(notified),
                 };
-                let notes = (messages, control);
-                rays += self.piece(seen, place, (Grid::ALL, self.sampling), notes)?;
+                let context = (messages, control);
+                rays += self.trace_piece(targets, target, (Grid::ALL, self.sampling), context)?;
             }
             Some(rays)
         };
@@ -380,12 +388,12 @@ impl Tracer {
     }
 }
 
-/// Splits rows of `width` pixels into pieces of `piece` columns: for each, its part of every row.
-fn in_pieces<P>(pixels: &mut [P], (width, piece): (usize, usize)) -> Vec<Vec<&mut [P]>> {
+/// Splits rows of `width` pixels into pieces of `piece_width` columns: for each, its part of every row.
+fn in_pieces<P>(pixels: &mut [P], (width, piece_width): (usize, usize)) -> Vec<Vec<&mut [P]>> {
     let mut pieces: Vec<Vec<&mut [P]>> = Vec::new();
-    pieces.resize_with(width.div_ceil(piece), Vec::new);
+    pieces.resize_with(width.div_ceil(piece_width), Vec::new);
     for row in pixels.chunks_mut(width) {
-        for (piece, part) in pieces.iter_mut().zip(row.chunks_mut(piece)) {
+        for (piece, part) in pieces.iter_mut().zip(row.chunks_mut(piece_width)) {
             piece.push(part);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::bundle::Bundle;
 use super::thin_margin::ThinMargin;
-use super::thresholds::ONE_THING;
+use super::thresholds::MERGED_SIZE;
 use crate::plan::{Bvh, Child, GROUP, Node};
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
@@ -11,7 +11,7 @@ use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 pub struct StackEntry<R> {
     /// The node that it is in, and its index there.
     node: u32,
-    place: u32,
+    slot: u32,
     /// The node that it holds.
     inner: u32,
     /// The rays that have treated a box around it as one thing, bit by bit.
@@ -32,20 +32,20 @@ pub trait TreeVisitor<L: SimdFloat> {
         false
     }
     /// Visits a member; `width` is the largest width of a pixel there, if things beside the rays are looked for.
-    fn meet(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>);
+    fn visit_member(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>);
     /// Visits a box for the rays that see its contents as one thing, given the ball around it and the thickness of
     /// its contents. Returns these rays and those that are not active, bit by bit.
-    fn settle(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
+    fn visit_merged_box(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
         0
     }
     /// Excludes these rays, bit by bit, from everything that is visited from now on.
-    fn leave_out(&mut self, _settled: u64) {}
+    fn exclude_lanes(&mut self, _merged_lanes: u64) {}
 }
 
 /// Returns up to how many of the rays of a packet are tested one by one if only these still look into a box: what
 /// they have in common with all others meets more boxes. One ray takes no longer than all together; of sixteen, two
 /// are the best of 1, 2, 3 and 5 for balls and meshes in their thousands: 0.75 to 0.8 of the time without.
-const fn few(lanes: usize) -> u32 {
+const fn max_single_rays(lanes: usize) -> u32 {
     match lanes {
         1 => 0,
         2..16 => 1,
@@ -54,7 +54,7 @@ const fn few(lanes: usize) -> u32 {
 }
 
 /// The number that stands for the node in which a traversal starts, which need not be the root of the tree.
-const START: u32 = u32::MAX;
+const START_NODE: u32 = u32::MAX;
 
 /// Visits the members that the rays may hit, from a node on.
 #[inline(always)]
@@ -65,33 +65,33 @@ pub fn walk<L: SimdFloat>(
     visitor: &mut impl TreeVisitor<L>,
 ) {
     let bottom = stack.len();
-    let (mut index, mut node) = (START, start);
+    let (mut index, mut node) = (START_NODE, start);
     // The rays that hit the box around the node, bit by bit.
     let mut lanes = bundle.active.bits();
     loop {
         let mut nears = [L::Real::ZERO; GROUP];
         let reach = visitor.reach();
-        let mut bits = if lanes.count_ones() <= few(L::WIDTH) {
-            bundle.few_meet(lanes, node, reach, &mut nears)
+        let mut bits = if lanes.count_ones() <= max_single_rays(L::WIDTH) {
+            bundle.boxes_met_by_lanes(lanes, node, reach, &mut nears)
         } else {
             let shaft = bundle.shaft();
             shaft.meets::<L>(reach.token(), node, reach.greatest(), &mut nears)
         };
-        let above = stack.len();
+        let first_new = stack.len();
         while bits != 0 {
-            let place = bits.trailing_zeros();
+            let slot = bits.trailing_zeros();
             bits &= bits - 1;
-            let child = node.child(place as usize);
+            let child = node.child(slot as usize);
             if visitor.is_culled(child) {
                 continue;
             }
             match child {
-                Child::Member(member) => visitor.meet(member, L::Real::ZERO, stack),
+                Child::Member(member) => visitor.visit_member(member, L::Real::ZERO, stack),
                 Child::Node(inner) => {
-                    let near = nears[place as usize];
+                    let near = nears[slot as usize];
                     let entry = StackEntry {
                         node: index,
-                        place,
+                        slot,
                         inner,
                         merged_lanes: 0,
                         near,
@@ -99,7 +99,7 @@ pub fn walk<L: SimdFloat>(
                     // Sorted by insertion: there are few.
                     let mut at = stack.len();
                     stack.push(entry);
-                    while at > above && stack[at - 1].near < near {
+                    while at > first_new && stack[at - 1].near < near {
                         stack[at] = stack[at - 1];
                         at -= 1;
                     }
@@ -114,14 +114,16 @@ pub fn walk<L: SimdFloat>(
                 return;
             }
             let Some(next) = stack.pop() else { return };
-            let around = match next.node {
-                START => start,
+            let parent = match next.node {
+                START_NODE => start,
                 inner => &bvh.nodes[inner as usize],
             };
-            let place = next.place as usize;
+            let slot = next.slot as usize;
             if next.near <= farthest {
-                let none = L::Real::ZERO;
-                lanes = bundle.each_meets(around, place, reach, none).bits();
+                let no_margin = L::Real::ZERO;
+                lanes = bundle
+                    .lanes_meeting_box(parent, slot, reach, no_margin)
+                    .bits();
                 if lanes != 0 {
                     break next.inner;
                 }
@@ -131,8 +133,8 @@ pub fn walk<L: SimdFloat>(
     }
 }
 
-/// Visits the thin members that the rays may come close to; the rays in `merged_lanes` (bit by bit) do not count from the
-/// start. What a ray is shown does not depend on the others of its packet.
+/// Visits the thin members that the rays may come close to; the rays in `merged_lanes` (bit by bit) do not count from
+/// the start. What a ray is shown does not depend on the others of its packet.
 #[inline(always)]
 pub fn walk_thin<L: SimdFloat>(
     bvh: &Bvh<L::Real>,
@@ -149,29 +151,32 @@ pub fn walk_thin<L: SimdFloat>(
     let mut index = 0;
     while let Some(node) = bvh.nodes.get(index as usize) {
         let mut widths = [L::Real::ZERO; GROUP];
-        let mut bits = shaft.grazes::<L>(token, node, farthest, margin, &mut widths);
-        visitor.leave_out(merged_lanes);
+        let mut bits = shaft.meets_thin::<L>(token, node, farthest, margin, &mut widths);
+        visitor.exclude_lanes(merged_lanes);
         while bits != 0 {
-            let place = bits.trailing_zeros();
+            let slot = bits.trailing_zeros();
             bits &= bits - 1;
-            let width = widths[place as usize];
+            let width = widths[slot as usize];
             let end = margin.end(reach, reach.like(width));
-            if !bundle.each_meets(node, place as usize, end, width).any() {
+            if !bundle
+                .lanes_meeting_box(node, slot as usize, end, width)
+                .any()
+            {
                 continue;
             }
-            match node.child(place as usize) {
-                Child::Member(member) => visitor.meet(member, width, stack),
+            match node.child(slot as usize) {
+                Child::Member(member) => visitor.visit_member(member, width, stack),
                 Child::Node(inner) => {
                     let mut merged_lanes = merged_lanes;
-                    let ball = node.bounds(place as usize).ball();
-                    if ball.1 + ball.1 < width * L::Real::from_f64(ONE_THING) {
-                        let thickness = L::Real::from_single(node.thickness[place as usize]);
-                        merged_lanes |= visitor.settle(ball, thickness);
+                    let ball = node.bounds(slot as usize).ball();
+                    if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
+                        let thickness = L::Real::from_single(node.thickness[slot as usize]);
+                        merged_lanes |= visitor.visit_merged_box(ball, thickness);
                     }
                     if merged_lanes & all != all {
                         stack.push(StackEntry {
                             node: index,
-                            place,
+                            slot,
                             inner,
                             merged_lanes,
                             near: L::Real::ZERO,

@@ -10,16 +10,16 @@ pub struct WorkspacePool(Mutex<Vec<Box<dyn Any + Send>>>);
 impl WorkspacePool {
     /// Takes what was left last; `None` if there is nothing, or something of another type.
     pub fn take<T: Any>(&self) -> Option<Box<T>> {
-        let left = self.kept().pop()?;
-        left.downcast().ok()
+        let workspace = self.lock().pop()?;
+        workspace.downcast().ok()
     }
 
     /// Leaves memory for the next piece.
-    pub fn put<T: Any + Send>(&self, left: Box<T>) {
-        self.kept().push(left);
+    pub fn put<T: Any + Send>(&self, workspace: Box<T>) {
+        self.lock().push(workspace);
     }
 
-    fn kept(&self) -> std::sync::MutexGuard<'_, Vec<Box<dyn Any + Send>>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Box<dyn Any + Send>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -37,7 +37,7 @@ use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
 
 /// Message shown while saving a picture keeps the window open.
-const CLOSING: &str = "Glint closes when the picture is written; Cancel gives it up";
+const CLOSING: &str = "Glint closes once the picture is saved; Cancel discards the picture";
 /// Storage key of the list of recent files.
 const RECENT_KEY: &str = "recent files";
 /// Storage key of the layout: which panels are shown.

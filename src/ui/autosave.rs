@@ -58,13 +58,13 @@ impl Autosave {
             let path = leftover.path.as_ref();
             let name = path.map_or("a new scene".to_owned(), |path| path.display().to_string());
             let discard = path.map_or(
-                "New in the File menu discards them",
+                "choose New in the File menu to discard them",
                 |_| "open the file again to discard them",
             );
             editor.recover(leftover);
             self.kept = Some((editor.revision(), Instant::now()));
             editor.notify(format!(
-                "Glint ended with unsaved changes to {name}; here they are. Save them, or {discard}."
+                "Glint ended with unsaved changes to {name}; they are restored here. Save them, or {discard}."
             ));
         }
         self.looked_for = editor.documents();
@@ -172,7 +172,7 @@ impl Autosave {
         if let Some(why) = &why {
             editor.report_error_in(
                 AUTOSAVE,
-                format!("Unsaved changes cannot be kept safe: {why}. Save your work."),
+                format!("Unsaved changes cannot be autosaved: {why}. Save your work."),
             );
         }
         self.why = why;

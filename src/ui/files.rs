@@ -109,7 +109,7 @@ impl Files {
 
     fn wish(&mut self, ctx: &Context, editor: &mut Editor, wish: PathRequest) {
         if self.waiting.is_some() {
-            return editor.notify("Another file dialog is open: answer that first".to_owned());
+            return editor.notify("Another file dialog is open: close it first".to_owned());
         }
         let suggested = self.folders.suggest(editor, &wish.ask);
         let answer = self.dialogs.ask(ctx, &wish.ask, suggested);
@@ -245,7 +245,7 @@ impl Files {
             Ask::OpenScene if !is_as_asked => return self.start(ctx, editor, Next::Open(path)),
             Ask::OpenScene => self.open(ctx, editor, &path),
             ask if !is_same => {
-                let why = "What this was for is not open any more";
+                let why = "The scene this was for is no longer open";
                 editor.report_error_in(ask.title(), why.to_owned());
             }
             Ask::ImportMesh => self.import_mesh(ctx, editor, &path),

@@ -87,7 +87,7 @@ const ALSO: [(Command, &str); 24] = [
     (Command::Timeline, "panel frames per second fps"),
     (Command::Delete, "remove delete key"),
     (Command::Lab, "panel measure stability chart"),
-    (Command::PictureAlone, "picture alone fullscreen"),
+    (Command::PictureAlone, "picture only alone fullscreen"),
     (Command::ViewFront, "look from the front"),
     (Command::ViewRight, "look from the right"),
     (Command::ViewTop, "look from the top"),
@@ -159,10 +159,10 @@ impl Finder {
         };
         let (down, up) = (step(ui, Key::ArrowDown), step(ui, Key::ArrowUp));
         let field = TextEdit::singleline(&mut self.text)
-            .hint_text("A command, an object, a light, a color pack, a setting")
+            .hint_text("Command, object, light, color pack or setting")
             .desired_width(f32::INFINITY)
             .align(Align2::LEFT_CENTER);
-        let field = ui.add(field).hint("Enter does what is marked");
+        let field = ui.add(field).hint("Enter runs the highlighted entry");
         field.request_focus();
         if field.changed() {
             self.meant = 0;
@@ -197,7 +197,7 @@ impl Finder {
                 }
             });
         if finds.is_empty() {
-            ui.weak("Nothing has this name.");
+            ui.weak("Nothing found");
         }
         let find = finds.into_iter().nth(taken?)?;
         find.is_enabled.then_some(find.what)
@@ -277,7 +277,7 @@ fn choices<'a>(
         (Command::Aspect(aspect), name)
     });
     let panels = WindowPart::PANELS.map(|(part, name)| {
-        let name = format!("Show or hide the panel: {}", name.to_lowercase());
+        let name = format!("Show or hide panel: {}", name.to_lowercase());
         (Command::Part(part), name)
     });
     let parts = WindowPart::OVER_PICTURE.map(|(part, name)| {
@@ -287,14 +287,14 @@ fn choices<'a>(
     let examples = EXAMPLES.iter().enumerate().map(|(index, example)| {
         (
             Command::Leave(Next::Example(index)),
-            format!("Open the example: {}", example.name),
+            format!("Open example: {}", example.name),
         )
     });
     let bookmarks = editor.scene().bookmarks.iter().enumerate();
     let bookmarks = bookmarks.map(|(index, bookmark)| {
         (
             Command::GoToBookmark(index),
-            format!("Go to the bookmark: {}", bookmark.name),
+            format!("Go to bookmark: {}", bookmark.name),
         )
     });
     let presets = Preset::ALL.map(|preset| {
@@ -302,7 +302,7 @@ fn choices<'a>(
         (Command::Preset(preset), name)
     });
     let timings = Retime::ALL.map(|timing| {
-        let name = format!("Other timing: {}", timing.words().0.to_lowercase());
+        let name = format!("Retime: {}", timing.words().0.to_lowercase());
         (Command::Retime(timing), name)
     });
     let all = shown

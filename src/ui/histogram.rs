@@ -54,7 +54,7 @@ impl Levels {
         for (counts, color) in histogram.counts.iter().zip(colors.axes) {
             painter.extend(curve(counts, histogram.highest(), graph, color));
         }
-        let words = format!("{:.1} % at the brightest", histogram.clipped * 100.0);
+        let words = format!("{:.1} % at full brightness", histogram.clipped * 100.0);
         let font = TextStyle::Small.resolve(ui.style());
         let at = graph.left_bottom() + vec2(0.0, GRID / 2.0);
         painter.text(at, egui::Align2::LEFT_TOP, words, font, colors.text);

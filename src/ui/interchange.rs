@@ -31,13 +31,13 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
     };
     match keys {
         Ok(keys) if keys.is_empty() => {
-            let why = format!("{}: there are no keys in it", path.display());
+            let why = format!("{}: the file contains no keys", path.display());
             editor.report_error_in(Ask::ImportPath.title(), why);
         }
         Ok(keys) if keys == editor.scene().animation.keys => {
             let keys = counted(keys.len(), "key");
             editor.notify(format!(
-                "The {keys} from {} are there already",
+                "The camera already has the {keys} from {}",
                 path.display()
             ));
         }
@@ -79,7 +79,7 @@ pub fn export_path(editor: &mut Editor, path: &Path) {
         .any(|key| (key.interpolation, key.easing) != plain);
     // Someone who exports for another program may know this; someone who takes the file for a copy does not.
     let lost = if is_table(path) && has_ways {
-        " without the ways and paces between keys: a RON file keeps them"
+        " without interpolation and easing of the keys; a RON file keeps them"
     } else {
         ""
     };
@@ -107,7 +107,7 @@ pub fn export_job(editor: &mut Editor, path: &Path) {
         }) => {
             let kept = replaced.iter().map(|(file, backup)| {
                 let (file, backup) = (file.display(), backup.display());
-                format!("; {file} held something else, which is kept as {backup}")
+                format!("; the previous {file} is kept as {backup}")
             });
             let kept: String = kept.collect();
             let scene = if is_copied {
@@ -127,7 +127,7 @@ fn write(editor: &Editor, path: &Path) -> Result<JobFiles, Box<dyn Error>> {
     let is_taken = editor.is_dirty() && !editor.scene().has_mesh_files();
     if is_taken && own.is_some_and(|own| is_same_file(own, &beside)) {
         let sentence = format!(
-            "{} is rendered as it is on the disk; save it first",
+            "The job renders {} as it is on disk: save it first",
             beside.display()
         );
         return Err(sentence.into());
@@ -177,7 +177,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
         let (name, limit) = (path.display(), MAX_BYTES >> 20);
         let quoted = for_shell(&name.to_string());
         let why = format!(
-            "{name} has {count} triangles, more than there is room for in the {limit} MiB of a scene file; `glint convert {quoted} -o NAME.ron` makes a scene beside it that refers to it"
+            "{name} has {count} triangles, too many for the {limit} MiB of a scene file; `glint convert {quoted} -o NAME.ron` makes a scene next to it that refers to it"
         );
         return editor.report_error_in(Ask::ImportMesh.title(), why);
     }
@@ -198,7 +198,7 @@ pub fn imported(editor: &mut Editor, path: &Path, file: MeshFile) {
     let how = if camera.is_some() {
         ""
     } else {
-        "; F brings them into the picture"
+        "; F frames them"
     };
     edits.extend(camera.map(|camera| Edit::Camera(camera, "frame")));
     if !editor.changes(Action::Edit(Edit::Each(edits, label))) {
@@ -222,6 +222,6 @@ fn odd_size(scene: &Scene, parts: &[Part]) -> String {
     let rounded = |size: f64| format!("{size:.2e}").parse::<f64>().unwrap_or(size);
     sizes.filter(is_odd).map_or(String::new(), |(own, all)| {
         let (own, all) = (rounded(own), rounded(all));
-        format!("; they are {own} units large, where the scene is {all}")
+        format!("; they measure {own} units, the scene {all}")
     })
 }

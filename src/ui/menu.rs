@@ -137,7 +137,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
         }
     }
     ui.separator();
-    entry(ui, "Frame what is selected", Command::FrameSelected, out);
+    entry(ui, "Frame selection", Command::FrameSelected, out);
     entry(ui, "Frame everything", Command::FrameAll, out);
     ui.menu_button("Look from", |ui| {
         for (text, command) in [
@@ -174,11 +174,11 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
             };
             lone(ui, &field, &mut layout.fly_speed);
         });
-    ui.menu_button("Letters and buttons", |ui| {
+    ui.menu_button("Text and buttons", |ui| {
         for (text, zoom) in [
             ("Larger", Zoom::In),
             ("Smaller", Zoom::Out),
-            ("Usual size", Zoom::Usual),
+            ("Default size", Zoom::Usual),
         ] {
             entry(ui, text, Command::Zoom(zoom), out);
         }
@@ -209,7 +209,7 @@ fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
             Command::Timeline,
         ),
         (layout.below == Below::Lab, "Lab", Command::Lab),
-        (layout.is_alone, "Picture alone", Command::PictureAlone),
+        (layout.is_alone, "Picture only", Command::PictureAlone),
     ] {
         if ticked(ui, is_on, name, Some(&command)).clicked() {
             out.commands.push(command);
@@ -239,7 +239,7 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
     let can_retime = is_enabled(&Command::Retime(Retime::Smooth), editor);
     ui.add_enabled_ui(can_retime, |ui| {
-        ui.menu_button("Other timing", |ui| retime_entries(ui, out));
+        ui.menu_button("Retime", |ui| retime_entries(ui, out));
     });
     ui.separator();
     entry(ui, "Import path…", Command::Ask(Ask::ImportPath), out);
@@ -296,7 +296,7 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let scene = editor.scene();
     let markers = scene.light_visualization;
-    let hint = "Show the markers of lights (I on, U off)";
+    let hint = "Show light markers (I on, U off)";
     if bar_switch(
         ui,
         markers,
@@ -332,7 +332,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         out.commands.push(other);
     }
     let is_still = editor.mode == Mode::HighRes;
-    let hint = "Trace the picture at its full size (H); Esc goes back to the live view";
+    let hint = "Trace the picture at full resolution (H); Esc returns to the live view";
     if bar_switch(
         ui,
         is_still,

@@ -129,10 +129,10 @@ fn refusal(field: &Field, text: &str) -> Option<String> {
             let (short, long) = (text.replace(',', "."), text.replace(',', ""));
             let text = quoted(text);
             Some(format!(
-                "{text} may be {short} or {long}: write one of them"
+                "{text} could mean {short} or {long}: write one of them"
             ))
         }
-        None => Some(format!("{} is no number", quoted(text))),
+        None => Some(format!("{} is not a number", quoted(text))),
         Some(number) => out_of_range(field, number),
     }
 }
@@ -144,10 +144,10 @@ fn out_of_range(field: &Field, number: f64) -> Option<String> {
     }
     let (name, least, most) = (field.name, *field.range.start(), *field.range.end());
     Some(if number <= 0.0 && 0.0 < least && least < SMALL {
-        format!("{name} must be above 0")
+        format!("{name} must be greater than 0")
     } else {
         let [least, most] = [least, most].map(|end| rounded(end, "", ENDS));
-        format!("{name} goes from {least} to {most}{}", field.unit)
+        format!("{name} must be between {least} and {most}{}", field.unit)
     })
 }
 
@@ -381,7 +381,7 @@ mod tests {
         let told = refusal(&field, "1,000");
         assert_eq!(
             told.as_deref(),
-            Some("“1,000” may be 1.000 or 1000: write one of them")
+            Some("“1,000” could mean 1.000 or 1000: write one of them")
         );
         for (text, number) in [
             ("1,5", 1.5),

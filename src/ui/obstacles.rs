@@ -34,7 +34,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
                 1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
                 _ => shapes.all(|shape| matches!(shape, Some(Shape::Triangle(_) | Shape::Mesh(_)))),
             };
-            (!can || items.is_empty()).then_some("no triangles or several meshes are selected")
+            (!can || items.is_empty()).then_some("select triangles or several meshes")
         }
         Command::Separate => {
             let (scene, items) = (editor.scene(), editor.selection().items());
@@ -43,14 +43,14 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
                 _ => None,
             };
             let can = matches!(shape, Some(Shape::Mesh(mesh)) if mesh.is_separable());
-            (!can).then_some("no single mesh of few enough triangles is selected")
+            (!can).then_some("select one mesh with few enough triangles")
         }
         Command::Retime(_) => {
             let has = editor.scene().animation.keys.len() > 1;
             (!has).then_some("the camera has fewer than two keys")
         }
         Command::Group if editor.selection().is_group(editor.scene()) => {
-            Some("it is a group already")
+            Some("it is already a group")
         }
         Command::Group | Command::PutDown => {
             let mut items = editor.selection().items().iter();
@@ -76,13 +76,15 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         Command::Rename | Command::MoveUp | Command::MoveDown => match editor.selection().items() {
             [] => Some(nothing),
             [_] => None,
-            _ => Some("several things are selected"),
+            _ => Some("several items are selected"),
         },
-        Command::Play if editor.scene().animation.duration() == 0.0 => Some("nothing moves yet"),
+        Command::Play if editor.scene().animation.duration() == 0.0 => {
+            Some("nothing is animated yet")
+        }
         Command::FirstFrame | Command::LastFrame | Command::FrameBack | Command::FrameOn
             if editor.scene().animation.is_still() =>
         {
-            Some("nothing moves yet")
+            Some("nothing is animated yet")
         }
         Command::SelectKeys | Command::PreviousKey | Command::NextKey => {
             let is_still = editor.scene().animation.is_still();
@@ -95,9 +97,11 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = !editor.scene().animation.keys.is_empty();
             (!has).then_some("the camera has no keys yet")
         }
-        Command::Record if editor.timeline().recorded().is_some() => Some("it records already"),
+        Command::Record if editor.timeline().recorded().is_some() => {
+            Some("a flight is already being recorded")
+        }
         Command::StopRecording if editor.timeline().recorded().is_none() => {
-            Some("nothing is recorded")
+            Some("no flight is being recorded")
         }
         _ => None,
     }

@@ -111,7 +111,7 @@ impl Watch {
                 editor,
                 OwnFile::Gone,
                 format!(
-                    "{path} is not there any more: it was moved or deleted. What is open here is in no file until it is saved again"
+                    "{path} no longer exists: it was moved or deleted. The open scene is in no file until it is saved again"
                 ),
             );
         }
@@ -327,8 +327,8 @@ impl Theirs {
 
     fn describe(&self, ui: &mut Ui) {
         ui.label(match &self.document {
-            Ok(_) => "You have changes that are not saved. In the file, against yours:",
-            Err(_) => "The file cannot be read any more:",
+            Ok(_) => "You have unsaved changes. In the file, compared with yours:",
+            Err(_) => "The file can no longer be read:",
         });
         for line in self.lines.iter().take(MOST_LINES) {
             // The first line is a sentence; the lines below must keep their columns.

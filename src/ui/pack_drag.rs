@@ -35,5 +35,5 @@ pub fn dressed(editor: &Editor, pack: Item, item: Item) -> Option<Edit> {
         Edit::of_item(scene, *item, "color pack", (to_object, to_light))
     });
     let edits: Vec<Edit> = edits.collect();
-    (!edits.is_empty()).then(|| Edit::Each(edits, format!("Wear {name}")))
+    (!edits.is_empty()).then(|| Edit::Each(edits, format!("Assign {name}")))
 }

@@ -282,7 +282,7 @@ fn show_recording(ui: &Ui, place: Place, seconds: f64) {
 
 /// Shows how to begin in an empty scene.
 fn hint_at_beginning(ui: &Ui, place: Place) {
-    let words = "Nothing is here yet.\n\nAdd a shape with Add in the menu, drop a mesh or a scene file here,\nor begin with Open example in the File menu.";
+    let words = "The scene is empty.\n\nAdd a shape from the Add menu, drop a mesh or a scene file here,\nor start with Open example in the File menu.";
     let font = TextStyle::Body.resolve(ui.style());
     let color = palette(ui.ctx()).on_picture;
     let painter = ui.painter().with_clip_rect(place.rect);

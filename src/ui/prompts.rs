@@ -78,7 +78,7 @@ fn tell_going(ui: &mut Ui, going: Option<&str>) {
     if let Some(going) = going {
         ui.add_space(GRID);
         ui.label(format!(
-            "Not finished: {going}. What is done stays; the window of exports resumes it next time."
+            "Not finished: {going}. Finished frames are kept; Export animation can resume it next time."
         ));
     }
 }
@@ -256,7 +256,9 @@ impl PathPrompt {
         }
         if !self.ask.takes(&path) {
             let endings = self.ask.endings().join(", .");
-            return impossible(format!("Its name has to end in one of these: .{endings}"));
+            return impossible(format!(
+                "The file name must end in one of these: .{endings}"
+            ));
         }
         let takes_folder = self.ask == Ask::ExportFolder;
         let is_begun = self.text.trim().ends_with(std::path::is_separator);
@@ -267,7 +269,7 @@ impl PathPrompt {
         }
         if self.would_replace() {
             let words = if self.is_asked() {
-                format!("{} is there already. Replace it?", path.display())
+                format!("{} already exists. Replace it?", path.display())
             } else {
                 format!("Replaces {}", path.display())
             };

@@ -38,11 +38,11 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
     let ends = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
     bodies.retain(|body: &Vec<usize>| body.iter().all(ends));
     if bodies.is_empty() {
-        return Err("What never ends cannot be put down");
+        return Err("Infinite objects, such as planes, cannot be put down");
     }
     let work = bodies.len() * (scene.objects.len() + scene.faces());
     if work > MOST_WORK {
-        return Err("That is too much to be put down at once");
+        return Err("There are too many objects and faces to put this down at once");
     }
     let lines = if work * LINES * LINES > MOST_WORK {
         0
@@ -70,7 +70,7 @@ pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static st
         }
     }
     let label = match edits.len() {
-        0 if has_ground => return Err("It stands already"),
+        0 if has_ground => return Err("It already stands on something"),
         0 => return Err("Nothing is below it"),
         1 => "Put down".to_owned(),
         count => format!("Put down {count} items"),
@@ -346,7 +346,7 @@ mod tests {
             put_down(scene, &selected).err()
         };
         assert!(put(&mut scene, &[0]));
-        assert_eq!(why(&scene), Some("It stands already"));
+        assert_eq!(why(&scene), Some("It already stands on something"));
         scene.objects.remove(1);
         assert_eq!(why(&scene), Some("Nothing is below it"));
         let before = scene.clone();

@@ -101,7 +101,7 @@ impl Reading {
     /// Returns the message about a mesh that arrived after its document was closed.
     pub fn describe_late(&self) -> String {
         let name = self.name();
-        format!("{name} was not imported: the scene that it was for is not open any more")
+        format!("{name} was not imported: the scene it was meant for is no longer open")
     }
 
     /// Returns the message about a reading thread that stopped because of an error of its own.
@@ -120,7 +120,7 @@ impl Reading {
     pub fn describe(&self, is_free: bool) -> String {
         let name = self.name();
         if !is_free {
-            return format!("{name} waits for the open question");
+            return format!("{name} is waiting for your answer");
         }
         let seconds = self.since.elapsed().as_secs_f64();
         format!("reading {name}, {seconds:.0} s")

@@ -279,7 +279,7 @@ pub fn is_channel(name: &str) -> bool {
 /// Shows a row whose label resets it.
 fn row(ui: &mut Ui, field: &Field, default: &str, add: impl FnOnce(&mut Ui, bool)) {
     let hint = format!(
-        "{}\nDouble-click: back to {default}{}",
+        "{}\nDouble-click: reset to {default}{}",
         field.hint, field.unit
     );
     labelled(ui, field.name, &hint, |ui, label| {
@@ -347,7 +347,7 @@ fn hex(ui: &mut Ui, name: &str, value: &mut DVec3) {
         .custom_formatter(|number, _| format!("#{:06X}", number as u32))
         .custom_parser(|text| {
             let color = parse_hex(text);
-            let words = || format!("{} is no color: write it like #FF8040", quoted(text));
+            let words = || format!("{} is not a color: write it like #FF8040", quoted(text));
             let is_wrong = color.is_none() && !text.trim().is_empty();
             refused.set(is_wrong.then(words));
             color.map(f64::from)

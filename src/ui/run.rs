@@ -72,7 +72,7 @@ impl App {
         if left > 0 {
             let files = counted(left, "other file");
             self.editor.notify(format!(
-                "One thing after the other: {files} of those that were dropped did not come in"
+                "Only one scene, or meshes and one path, can be dropped at a time: {files} ignored"
             ));
         }
         match dropped {
@@ -121,8 +121,7 @@ impl App {
                 }
             }
             Command::Copy | Command::Cut if !self.editor.selection().keys().is_empty() => {
-                let told =
-                    "Duplicate copies keys to the playhead, a drag with Ctrl along their row";
+                let told = "Duplicate copies keys to the playhead; Ctrl-dragging copies them along their row";
                 self.editor.notify(told.to_owned());
             }
             Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
@@ -180,7 +179,7 @@ impl App {
     /// Tells the user how to see the new selection if it is outside the picture.
     fn tell_unseen(&mut self, what: &str) {
         if is_selected_unseen(&self.editor) {
-            let text = format!("{what} is not in the picture; F brings it in");
+            let text = format!("{what} is outside the picture; F frames it");
             self.editor.notify_of_step(text);
         }
     }
@@ -251,7 +250,7 @@ impl App {
         let is_whole = pasted.mesh_problems().next().is_none();
         let paste = Edit::Paste(Box::new(pasted), "Paste");
         if self.editor.changes(Action::Edit(paste)) {
-            self.tell_unseen("What was pasted");
+            self.tell_unseen("The pasted selection");
             if !is_whole {
                 self.editor.report_missing_meshes();
             }
@@ -335,8 +334,7 @@ impl App {
                 let is_down = *command == Command::MoveDown;
                 let Some(edit) = step(editor, is_down) else {
                     let side = if is_down { "below" } else { "above" };
-                    return editor
-                        .notify(format!("Nothing is {side} it in its list, or in its group"));
+                    return editor.notify(format!("Nothing is {side} it in its list or group"));
                 };
                 Action::Edit(edit)
             }
@@ -404,10 +402,10 @@ impl App {
 /// meant for a text field.
 fn told(command: &Command) -> Option<&'static str> {
     Some(match command {
-        Command::Orthographic => "Orthographic projection; P is perspective",
-        Command::Perspective => "Perspective projection; O is orthographic",
-        Command::MarkersOn => "Lights have markers; U hides them",
-        Command::MarkersOff => "Lights have no markers; I shows them",
+        Command::Orthographic => "Orthographic projection; P switches to perspective",
+        Command::Perspective => "Perspective projection; O switches to orthographic",
+        Command::MarkersOn => "Light markers are shown; U hides them",
+        Command::MarkersOff => "Light markers are hidden; I shows them",
         _ => return None,
     })
 }
@@ -416,7 +414,9 @@ fn told(command: &Command) -> Option<&'static str> {
 fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
     let name = free_bookmark_name(&bookmarks, "View 1");
-    editor.notify(format!("{name} is a bookmark; the View menu goes there"));
+    editor.notify(format!(
+        "{name} is bookmarked; Go to bookmark in the View menu returns to it"
+    ));
     let camera = editor.shown().camera.clone();
     bookmarks.push(Bookmark { name, camera });
     Action::Edit(Edit::Bookmarks(bookmarks, "Add bookmark"))

@@ -56,7 +56,7 @@ impl SceneCheck {
         self.is_clipped = true;
         self.hints.push(Hint {
             words: format!(
-                "{:.0} % of the picture is as bright as can be: less light shows more",
+                "{:.0} % of the picture is at full brightness: less light shows more",
                 clipped * 100.0
             ),
             about: About::World,
@@ -79,7 +79,7 @@ impl SceneCheck {
         let button = ui.add(button.frame_when_inactive(false));
         let button = button
             .accessible_name(words)
-            .hint("What is probably not meant in the scene");
+            .hint("Probable mistakes in the scene");
         Popup::menu(&button).width(WIDTH).show(|ui| {
             let area = ScrollArea::vertical().max_height(MOST_ROWS * ROW);
             area.show_rows(ui, ROW, count, |ui, rows| {

@@ -71,7 +71,7 @@ fn doing(
         }
         Activity::Live { revision, elapsed } if *elapsed >= READY && shown != Some(*revision) => {
             ui.weak(format!(
-                "making the scene ready for tracing, {:.1} s",
+                "preparing the scene for tracing, {:.1} s",
                 elapsed.as_secs_f64()
             ));
             ui.request_repaint_after(Duration::from_millis(100));
@@ -92,7 +92,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     let cancel = egui::Button::new(RichText::new("Cancel").small());
     if ui
         .add(cancel)
-        .hint("Give the high-res picture up (Esc)")
+        .hint("Cancel the high-res picture (Esc)")
         .clicked()
     {
         out.commands.push(Command::CancelStill);

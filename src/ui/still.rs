@@ -51,7 +51,7 @@ impl Still {
     /// Returns the name that is shown on the picture.
     pub fn name(&self, is_part: bool) -> String {
         match (is_part, self.magnifier.factor) {
-            (true, _) => "High-res, a part".to_owned(),
+            (true, _) => "High-res, partial".to_owned(),
             (false, 0) => "High-res picture".to_owned(),
             (false, factor) => format!("High-res picture {factor}:1"),
         }

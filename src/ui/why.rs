@@ -116,7 +116,7 @@ impl Why {
         window.open(&mut is_open).show(ctx, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 if aspect != Aspect::default() {
-                    ui.weak("Of the picture with everything, whatever the view shows of it now.");
+                    ui.weak("For the complete picture, whatever the view is showing.");
                 }
                 show(ui, answer, 0);
                 show_drawn(ui, answer, self.drawn);
@@ -147,14 +147,14 @@ fn show_drawn(ui: &mut Ui, explanation: &Explanation, drawn: Option<DVec3>) {
         return;
     };
     ui.separator();
-    term(ui, "is what the picture has there", drawn);
-    ui.weak("The terms are those of exact formulas, and of flat faces: other formulas, single precision or a mesh that is shaded as curved may come to something else.");
+    term(ui, "is the colour in the picture", drawn);
+    ui.weak("The terms are computed with exact formulas and flat faces: other formulas, single precision or a smooth-shaded mesh may give something else.");
 }
 
 fn show(ui: &mut Ui, explanation: &Explanation, depth: usize) {
     match explanation {
         Explanation::Sky(color) => {
-            term(ui, "background: nothing is met", *color);
+            term(ui, "background: the ray hits nothing", *color);
         }
         Explanation::Marker(light, color) => {
             term(
@@ -173,7 +173,7 @@ fn show_surface(ui: &mut Ui, lit: &ShadingTerms, depth: usize) {
         swatch(ui, color);
         ui.label(RichText::new(channels(color)).monospace());
         ui.label(RichText::new(&lit.object).strong());
-        ui.weak(format!("wears {}, {} away", lit.pack, number(lit.distance)));
+        ui.weak(format!("uses {}, {} away", lit.pack, number(lit.distance)));
     });
     let place = |vector: DVec3| vector.to_array().map(number).join(", ");
     ui.weak(format!(
@@ -182,9 +182,7 @@ fn show_surface(ui: &mut Ui, lit: &ShadingTerms, depth: usize) {
         place(lit.normal)
     ));
     if lit.is_smooth {
-        ui.weak(
-            "The picture shades this mesh as curved, and these are the numbers of the flat face.",
-        );
+        ui.weak("The picture shades this mesh smoothly; these are the numbers of the flat face.");
     }
     ui.indent(("why", depth), |ui| {
         term(ui, "ambient intensity · ambient", lit.ambient);
@@ -197,11 +195,11 @@ fn show_surface(ui: &mut Ui, lit: &ShadingTerms, depth: usize) {
                 channels(*filter)
             );
             term(ui, &what, *filter * seen.color());
-            ui.weak("times what is seen there:");
+            ui.weak("times the colour seen there:");
             show(ui, seen, depth + 1);
         }
         ui.separator();
-        term(ui, "sum, each channel at most 1", color);
+        term(ui, "sum, each channel limited to 1", color);
     });
 }
 

@@ -87,7 +87,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         shared.wakeup.notify_all();
         if let Some(panic) = panic {
             shared.report(Event::Fault(format!(
-                "The tracer stopped with a fault of its own: {}. Your scene is untouched; change it or undo the last step to go on.",
+                "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
                 panic_text(panic.as_ref())
             )));
         }
@@ -189,7 +189,9 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
         Some(ExportStep::Going | ExportStep::Stopped) => None,
         Some(ExportStep::Done) => Some(exporting.finish().map(|_| ()).map_err(|e| e.to_string())),
         Some(ExportStep::Failed(error)) => Some(Err(error.to_string())),
-        None => Some(Err("the tracer stopped with a fault of its own".to_owned())),
+        None => Some(Err(
+            "the tracer stopped because of an internal error".to_owned()
+        )),
     };
     let (done, last) = (exporting.done(), exporting.last().cloned());
     let mut mailbox = shared.mailbox();

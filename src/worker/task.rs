@@ -12,7 +12,7 @@ pub struct Background<T>(Option<Receiver<T>>);
 
 /// The thread of the work could not be started, or it panicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the thread for it could not be started, or stopped with a fault of its own")]
+#[error("its thread could not be started, or stopped because of an internal error")]
 pub struct NoAnswer;
 
 impl<T> Default for Background<T> {

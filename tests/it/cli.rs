@@ -170,7 +170,7 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
-            "\"a.jpg\" ends in no known picture format",
+            "\"a.jpg\" does not end in a known picture format",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--width", "0"],
@@ -190,11 +190,11 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["render", DEMO, "-o", "a.png", "--antialias", "contrast"],
-            "expected none, adaptive, grid: and a number",
+            "expected none, adaptive, grid:N with N from 1",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--antialias", "grid:0"],
-            "expected none, adaptive, grid: and a number",
+            "expected none, adaptive, grid:N with N from 1",
         ),
         (
             &["render", DEMO, "-o", "a.png", "--triangle", "moeller"],
@@ -222,17 +222,17 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         ),
         (
             &["--screenshot", "a.png", "--select", "Sphere 7"],
-            "no object and no light named \"Sphere 7\"",
+            "no object or light named \"Sphere 7\"",
         ),
         (&["export", DEMO], "--output <DIR>"),
         (&["check"], "<SCENE>..."),
         (
             &["rendr"],
-            "there is no command \"rendr\"; there are render",
+            "there is no command \"rendr\"; the commands are render",
         ),
         (
             &["chek", DEMO],
-            "there is no command \"chek\"; there are render, export, job, check, convert, plan, chart, stability, referee, and",
+            "there is no command \"chek\"; the commands are render, export, job, check, convert, plan, chart, stability, referee, and",
         ),
     ];
     for (words, expected) in cases {
@@ -430,7 +430,9 @@ fn chart_prints_the_front_and_writes_every_figure() {
         folder.path(),
         &["chart", DEMO, "--side", "8", "--budget", "0.0000001"],
     );
-    assert!(String::from_utf8_lossy(&run.stdout).contains("nothing measured is within that"));
+    assert!(
+        String::from_utf8_lossy(&run.stdout).contains("no measured method is within that limit")
+    );
 }
 
 #[test]
@@ -505,7 +507,7 @@ fn desktops_and_shells_are_told_of_the_program() {
     assert!(read("applications/glint.desktop").contains(env!("CARGO_BIN_EXE_glint")));
     let icon = image::open(folder.path().join("icons/hicolor/256x256/apps/glint.png"));
     assert_eq!(icon.expect("an icon").width(), 256);
-    assert!(read("man/man1/glint.1").contains("Trace a scene into a picture"));
+    assert!(read("man/man1/glint.1").contains("Trace a scene and save the picture"));
     assert!(read("man/man1/glint-render.1").contains("antialias"));
     for completed in [
         "bash-completion/completions/glint",

@@ -346,10 +346,8 @@ fn neighbours_that_share_a_border_are_not_held_against_each_other() {
     );
     let words = glint::scene::hints(&scene([floor(), rug()]));
     assert!(
-        words
-            .iter()
-            .any(|hint| hint.words
-                == "object 1 lies in object 0, which comes first and is seen there"),
+        words.iter().any(|hint| hint.words
+            == "object 1 lies in the surface of object 0, which comes first and is shown there"),
         "{words:?}"
     );
 }

@@ -115,7 +115,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let twelve = ["--frames", "1-12"];
     let said = done(&mut export(&frames, &twelve));
     assert!(
-        said.contains("12 frames written, 0 there already"),
+        said.contains("12 frames written, 0 already there"),
         "{said}"
     );
     let before = files(&frames);
@@ -132,7 +132,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let said = done(export(&frames, &twelve).arg("--dry-run"));
     assert!(said.contains("4 frames of 12 to make: 2-5"), "{said}");
     let said = done(&mut export(&frames, &twelve));
-    assert!(said.contains("4 frames written, 8 there already"), "{said}");
+    assert!(said.contains("4 frames written, 8 already there"), "{said}");
     assert!(files(&frames) == before);
     // A truncated note counts as none.
     let notes = frames.join("glint-frames.txt");
@@ -141,7 +141,7 @@ fn only_what_is_not_there_as_it_should_be_is_made() {
     let cut = format!("{}\n{}", lines[..5].join("\n"), &lines[5][..40]);
     fs::write(&notes, cut).expect("written");
     let said = done(&mut export(&frames, &twelve));
-    assert!(said.contains("8 frames written, 4 there already"), "{said}");
+    assert!(said.contains("8 frames written, 4 already there"), "{said}");
     // A frame also depends on the render settings.
     let said = done(export(&frames, &twelve).args(["--antialias", "none"]));
     assert!(said.contains("12 frames written"), "{said}");
@@ -194,9 +194,9 @@ fn a_note_that_was_cut_off_costs_its_own_frame_only() {
     let text = fs::read_to_string(&notes).expect("readable");
     fs::write(&notes, &text[..text.len() - 9]).expect("written");
     let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
-    assert!(said.contains("2 frames written, 2 there already"), "{said}");
+    assert!(said.contains("2 frames written, 2 already there"), "{said}");
     let said = done(&mut export(folder.path(), &["--frames", "1-4"]));
-    assert!(said.contains("0 frames written, 4 there already"), "{said}");
+    assert!(said.contains("0 frames written, 4 already there"), "{said}");
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn notes_that_are_a_link_to_nowhere_are_told_before_the_first_frame() {
     let output = run(&mut export(folder.path(), &["--frames", "1"]));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(
-        said.contains("glint-frames.txt: it is a link that leads nowhere"),
+        said.contains("glint-frames.txt: it is a broken link"),
         "{said}"
     );
     assert!(!folder.path().join("rayTrace1.ppm").exists());
@@ -285,9 +285,9 @@ fn pipes_in_place_of_files_and_folders_are_refused_and_not_waited_for() {
     pipe(&scene);
     let scene = scene.to_str().expect("plain");
     let words = ["convert", "scenes/knot.ply", "-o", scene];
-    refused(&mut glint(&words), "that is not a file");
+    refused(&mut glint(&words), "and is not a file");
     let mut into_pipe = export(Path::new(scene), &["--frames", "1"]);
-    refused(&mut into_pipe, "that is not a folder");
+    refused(&mut into_pipe, "and is not a folder");
 }
 
 #[test]
@@ -349,15 +349,15 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
     }
     // Frames too short for the clock of a GIF are left out, but never all of them.
     for (fps, frames, told, shown) in [
-        ("120", "1-8", "leaves out 4 of 8", 4),
-        ("240", "1-2", "leaves out 1 of 2", 1),
+        ("120", "1-8", "4 of 8 are left out", 4),
+        ("240", "1-2", "1 of 2 are left out", 1),
         ("50", "1-8", "", 8),
     ] {
         let gif = video("fast.gif");
         let words = ["--frames", frames, "--video", &gif];
         let said = warned(&mut at_rate(folder.path(), fps, (8, 8), &words));
         assert!(
-            said.contains(told) && told.is_empty() != said.contains("leaves out"),
+            said.contains(told) && told.is_empty() != said.contains("are left out"),
             "{said}"
         );
         assert_eq!(gif_frames(&gif).len(), shown, "{fps}");
@@ -402,7 +402,7 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
     );
     // The recording does not affect the pictures.
     scene.animation_mut().take = None;
-    assert!(again(&scene).contains("0 frames written, 202 there already"));
+    assert!(again(&scene).contains("0 frames written, 202 already there"));
 }
 
 #[test]
@@ -416,7 +416,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("rayTrace7.ppm") && said.contains("goes on from there"),
+        said.contains("rayTrace7.ppm") && said.contains("resumes the export"),
         "{said}"
     );
     fs::remove_dir(&obstacle).expect("removed");
@@ -509,7 +509,10 @@ fn frames_that_another_export_has_replaced_are_told_before_anything_is_made_of_t
         assert_eq!(finished.is_err(), is_told, "{finished:?}");
         if let Err(error) = finished {
             let said = error.to_string();
-            assert!(said.contains("rayTrace1.ppm is not the frame"), "{said}");
+            assert!(
+                said.contains("rayTrace1.ppm is no longer the frame"),
+                "{said}"
+            );
         }
     }
 }
@@ -604,14 +607,11 @@ fn words_are_checked_before_anything_is_written() {
         ),
         (&["--frames", "3-1"], "1 comes before 3"),
         (&["--frames", "-3"], "expected frames such as 1-202"),
-        (&["--name", "frame"], "a name needs %d"),
-        (&["--name", "../%d"], "a name has no folders"),
-        (
-            &["--video", "a.avi"],
-            "end it in .mp4, .mov, .mkv, .gif or .apng",
-        ),
+        (&["--name", "frame"], "the name needs %d"),
+        (&["--name", "../%d"], "the name must not contain folders"),
+        (&["--video", "a.avi"], "use .mp4, .mov, .mkv, .gif or .apng"),
         (&["--format", "JPG"], "expected ppm, png or exr"),
-        (&["--format", "PNG", "--name", "frame"], "a name needs %d"),
+        (&["--format", "PNG", "--name", "frame"], "the name needs %d"),
     ] {
         let output = run(&mut export(&frames, words));
         let said = String::from_utf8_lossy(&output.stderr);
@@ -853,7 +853,7 @@ fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
             "ffmpeg failed:\nno such codec",
         ),
         ("cat >/dev/null\nexit 0", "it wrote nothing"),
-        ("exit 0", "it ended before it had all frames"),
+        ("exit 0", "it ended before it had received all frames"),
         ("printf 'a\\033[2Jb' >&2\nexit 3", "ffmpeg failed:\na [2Jb"),
         // More than a pipe holds, before it reads frames that are more than a pipe holds as well.
         ("seq 100000 >&2\ncat >/dev/null\nexit 3", "99999\n100000"),
@@ -890,7 +890,7 @@ fn what_may_only_be_read_is_not_replaced() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("kept.png") && said.contains("may not be written to"),
+        said.contains("kept.png") && said.contains("the file is read-only"),
         "{said}"
     );
     assert_eq!(fs::read_to_string(&picture).expect("there"), "a photograph");
@@ -1002,14 +1002,14 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.window.get_by_label("Start export").click();
     harness.window.step();
     // A second click requests nothing more.
-    see(&mut harness, "These files are being made");
+    see(&mut harness, "These files are being written");
     harness.window.get_by_label("Start export").click();
     finish(&mut harness);
     let rows = harness
         .window
         .query_all_by_label_contains("14 frames and frames.gif");
     assert_eq!(rows.count(), 1);
-    see(&mut harness, "all 14 frames are there, then frames.gif");
+    see(&mut harness, "all 14 frames already exist, then frames.gif");
     harness.type_name("frames", "nonsense");
     harness
         .window
@@ -1056,7 +1056,7 @@ fn the_size_of_frames_keeps_the_shape_of_the_picture_until_it_is_freed() {
     assert_eq!(size(&harness), ["640 px", "400 px"]);
     harness.type_into("export height", "1600");
     assert_eq!(size(&harness), ["2560 px", "1600 px"]);
-    harness.click("keep the shape of the picture");
+    harness.click("keep aspect ratio");
     harness.type_into("export width", "320");
     assert_eq!(size(&harness), ["320 px", "1600 px"]);
 }
@@ -1078,7 +1078,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     see(&mut harness, "Quit while exporting?");
     harness
         .window
-        .get_by_label_contains("the window of exports resumes it next time");
+        .get_by_label_contains("Export animation can resume it next time");
     harness.window.get_by_label("Stay").click();
     harness.window.step();
     harness.window.step();
@@ -1094,7 +1094,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.window.key_press(Key::O);
     harness.window.step();
     harness.window.key_press_modifiers(CTRL, Key::Q);
-    see(&mut harness, "the window of exports resumes it next time");
+    see(&mut harness, "Export animation can resume it next time");
     harness.window.get_by_label("Don't save").click();
     for _ in 0..3 {
         harness.window.step();
@@ -1157,7 +1157,7 @@ fn frames_of_light_hold_what_eight_bits_round() {
         &light,
         &["--frames", "1-5:2", "--format", "exr"],
     ));
-    assert!(said.contains("3 there already"), "{said}");
+    assert!(said.contains("3 already there"), "{said}");
 }
 
 #[test]

@@ -280,11 +280,11 @@ fn what_was_asked_for_is_said_to_be() {
         |scene| scene.render.specular = HighlightMethod::Log1p,
         "highlights",
     );
-    assert!(power.ends_with("Phong exponents: it was asked for"));
+    assert!(power.ends_with("Phong exponents: it was requested"));
     let nothing = |scene: &mut Scene| scene.objects = std::iter::empty().collect();
-    assert!(why(nothing, "highlights").contains("nothing that is visible"));
+    assert!(why(nothing, "highlights").contains("no visible object has a specular colour"));
     assert!(why(nothing, "shadows").ends_with("nothing is visible"));
-    assert!(why(nothing, "faces").starts_with("no triangles by themselves"));
+    assert!(why(nothing, "faces").starts_with("no single triangles"));
     let demo = why(|_| {}, "faces");
     let counted = "3 of 6 triangles left out for the camera, 8 of 12 for 2 lights";
     assert!(demo.contains(counted), "{demo}");

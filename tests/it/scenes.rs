@@ -160,7 +160,7 @@ fn emptiness_and_size_are_refused() {
     file.set_len(1 << 40).expect("a sparse terabyte");
     let error = Document::load(&path).expect_err("too large").to_string();
     assert!(
-        error.contains("a scene file has at most 268435456 bytes, this one has 1099511627776"),
+        error.contains("a scene file may have at most 268435456 bytes; this one has 1099511627776"),
         "{error}"
     );
     let error = Document::load(&folder.path().join("none.ron"))

@@ -548,19 +548,19 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
         (
             "length of the flight",
             "-1",
-            "length of the flight must be above 0",
+            "length of the flight must be greater than 0",
         ),
         (
             "length of the flight",
             "1e9",
-            "length of the flight goes from",
+            "length of the flight must be between",
         ),
         (
             "frames per second",
             "1000",
-            "frames per second goes from 1 to 240",
+            "frames per second must be between 1 and 240",
         ),
-        ("playing speed", "fast", "“fast” is no number"),
+        ("playback speed", "fast", "“fast” is not a number"),
     ] {
         harness.type_into(field, text);
         harness.window.get_by_label_contains(words);
@@ -578,7 +578,11 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
 fn escape_gives_the_drag_of_a_number_of_the_timeline_up() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
     let before = harness.scene().clone();
-    for field in ["length of the flight", "frames per second", "playing speed"] {
+    for field in [
+        "length of the flight",
+        "frames per second",
+        "playback speed",
+    ] {
         let at = harness.give_up_dragging(field, |harness| {
             let is_faster = harness.editor().timeline().speed != 1.0;
             assert!(is_faster || harness.scene() != &before, "{field}");
@@ -603,7 +607,7 @@ fn a_length_that_only_a_file_can_have_is_left_in_silence() {
     harness.settle();
     harness.press(Modifiers::NONE, Key::Enter);
     assert_eq!(harness.scene(), &before);
-    let words = "length of the flight goes from";
+    let words = "length of the flight must be between";
     assert!(harness.window.query_by_label_contains(words).is_none());
 }
 
@@ -623,7 +627,7 @@ fn a_flight_that_nothing_can_stretch_stays_as_it_is() {
     harness.type_into("length of the flight", "1");
     harness
         .window
-        .get_by_label_contains("length of the flight goes from");
+        .get_by_label_contains("length of the flight must be between");
     assert_eq!(harness.scene(), &before);
 }
 
@@ -772,7 +776,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
     );
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.tracks.is_empty());
-    let told = "Delete Sun: keys have gone as well (Sun: intensity)";
+    let told = "Delete Sun: keys were deleted too (Sun: intensity)";
     harness.window.get_by_label_contains(told);
 }
 
@@ -997,7 +1001,9 @@ fn paths_go_out_to_a_table_and_come_back() {
         assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
     }
     harness.choose("Animate", "Import path…");
-    harness.window.get_by_label_contains("are there already");
+    harness
+        .window
+        .get_by_label_contains("camera already has the");
     let broken = harness.folder.path().join("broken.csv");
     std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
     let kept = harness.scene().animation.keys.clone();
@@ -1015,7 +1021,7 @@ fn paths_go_out_to_a_table_and_come_back() {
     harness.choose("Animate", "Export path…");
     harness
         .window
-        .get_by_label_contains("circle.csv without the ways and paces between keys");
+        .get_by_label_contains("circle.csv without interpolation and easing of the keys");
 }
 
 /// A frame rendered on the command line equals the frame at the playhead in the window, byte by byte.
@@ -1115,16 +1121,18 @@ fn a_pace_for_several_keys_leaves_their_ways() {
     let mut harness = EditorHarness::on(scene);
     hover_over_line(&mut harness);
     harness.press(CTRL, Key::A);
-    harness.unfold("pace");
+    harness.unfold("easing");
     harness.click("slow start");
     let keys = &harness.scene().animation.keys;
     let left: Vec<Interpolation> = keys.iter().map(|key| key.interpolation).collect();
     assert_eq!(left, ways);
     assert!(keys.iter().all(|key| key.easing == keys[0].easing));
-    assert_eq!(harness.editor().undo_label(), Some("Key: pace"));
+    assert_eq!(harness.editor().undo_label(), Some("Key: easing"));
     // Choosing the value that the first key already has applies it to all.
-    harness.window.get_by_label("Not the same for all: way");
-    harness.unfold("way");
+    harness
+        .window
+        .get_by_label("Not the same for all: interpolation");
+    harness.unfold("interpolation");
     harness.click(ways[0].name());
     let keys = &harness.scene().animation.keys;
     assert!(keys.iter().all(|key| key.interpolation == ways[0]));

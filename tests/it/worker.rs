@@ -312,7 +312,7 @@ fn a_fault_in_the_tracer_is_shown_and_the_lane_lives_on() {
         !events.is_empty()
     });
     assert!(
-        matches!(&events[0], Event::Fault(text) if text.contains("fault of its own")),
+        matches!(&events[0], Event::Fault(text) if text.contains("internal error")),
         "{events:?}"
     );
     worker.submit(live(2, &Arc::new(Scene::demo()), 64));

@@ -36,7 +36,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
     let frames = || Axis::new("frames", &FRAMES);
     let drift = |name: &'static str, is_default, turned: fn(u64) -> DMat3| {
         Map::measure(
-            (MapSubject::CameraTurns, "is no orthonormal basis any more"),
+            (MapSubject::CameraTurns, "is no longer an orthonormal basis"),
             (name.to_owned(), is_default),
             (frames(), Axis::one("camera")),
             |frames, _| Tries::count([is_distorted(&turned(frames as u64))]),

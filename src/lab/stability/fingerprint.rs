@@ -29,7 +29,7 @@ pub fn map(effort: u32) -> Map {
     Map::measure(
         (
             MapSubject::Fingerprint,
-            "changed frame that is not made again",
+            "changed frame that is not traced again",
         ),
         ("all that decides it".to_owned(), true),
         (across, Axis::one("")),

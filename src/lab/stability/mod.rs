@@ -67,7 +67,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
 pub fn summary(maps: &[Map]) -> String {
     let mut text = format!(
         "  {:<21} {:<28} {:>10} {:>11} {:>11}  {}\n",
-        "tried", "method", "tries", "failures", "95 % below", "worst"
+        "subject", "method", "tries", "failures", "95 % bound", "worst"
     );
     for map in maps {
         let total = map.total();

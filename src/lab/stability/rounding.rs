@@ -24,7 +24,10 @@ const LEVEL_STEP: f32 = 1.0 / 255.0;
 pub fn maps() -> Vec<Map> {
     let map = |precision: Precision| {
         Map::measure(
-            (MapSubject::Rounding, "pixel other than in double precision"),
+            (
+                MapSubject::Rounding,
+                "pixel that differs from double precision",
+            ),
             (precision.id(), precision == Precision::default()),
             (bounces(), distances()),
             |bounces, away| {

@@ -43,7 +43,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             subject: MapSubject::Thin,
             method: sampling.id(),
             is_default: *sampling == Sampling::default(),
-            failure: "pixel that shows nothing of it",
+            failure: "pixel that does not show it",
             across: Axis::new("pixels wide", &WIDTHS),
             up: Axis::new("away", &DISTANCES),
             cells: Vec::new(),

@@ -22,7 +22,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             Map::measure(
                 (
                     MapSubject::Triangle,
-                    "ray from inside a closed mesh that meets nothing",
+                    "ray from inside a closed mesh that hits nothing",
                 ),
                 (
                     method.id.to_owned(),

@@ -19,7 +19,7 @@ impl Map {
         let part = failing_part(&self.across, &columns).or_else(|| failing_part(&self.up, &rows));
         match part {
             Some((words, tries)) => format!("{} {words}", percent(tries.rate())),
-            None => format!("{} wherever it was tried", percent(total.rate())),
+            None => format!("{} wherever it was tested", percent(total.rate())),
         }
     }
 
@@ -125,6 +125,6 @@ mod tests {
         assert_eq!(map([0, 500, 0, 460]).sentence(), "48 % from 1e4 radii on");
         assert_eq!(map([30, 0, 12, 0]).sentence(), "2.1 % up to 10 radii");
         assert_eq!(map([1, 2, 0, 0]).sentence(), "0.15 % up to scale 0.1");
-        assert_eq!(map([1000; 4]).sentence(), "100 % wherever it was tried");
+        assert_eq!(map([1000; 4]).sentence(), "100 % wherever it was tested");
     }
 }

@@ -19,7 +19,7 @@ fn files_that_are_not_there_or_not_meshes() {
     let sample = Sample::new("m.txt", "");
     assert_eq!(
         sample.error(),
-        "m.txt: meshes are read from files that end in .obj, .stl, .ply, .gltf or .glb"
+        "m.txt: not a mesh file; their names end in .obj, .stl, .ply, .gltf or .glb"
     );
     let folder = sample.folder.path().join("m.stl");
     std::fs::create_dir(&folder).expect("a folder");
@@ -35,17 +35,17 @@ fn files_that_are_too_large_are_not_read() {
     file.set_len((2 << 30) + 1).expect("a long file");
     assert_eq!(
         sample.error(),
-        "m.stl: a mesh file has at most 2147483648 bytes, this one has more"
+        "m.stl: a mesh file may have at most 2147483648 bytes; this one has more"
     );
     let many = "g\n".repeat(1_000_001);
     assert_eq!(
         error_of("m.obj", many),
-        "m.obj: a mesh has at most 1000000 groups, this one has more"
+        "m.obj: a mesh may have at most 1000000 groups; this one has more"
     );
     let polygon = format!("v 0 0 0\nf{}", " 1".repeat(16_000_003));
     assert_eq!(
         error_of("m.obj", polygon),
-        "m.obj: a mesh has at most 16000000 faces, this one has more"
+        "m.obj: a mesh may have at most 16000000 faces; this one has more"
     );
 }
 
@@ -53,17 +53,17 @@ fn files_that_are_too_large_are_not_read() {
 fn broken_stl() {
     assert_eq!(
         error_of("m.stl", &binary_stl()[..700]),
-        "m.stl: the header promises 20 triangles, which take 1084 bytes, and the file ends after 700"
+        "m.stl: the header declares 20 triangles, which take 1084 bytes, but the file ends after 700"
     );
     let mut binary = binary_stl();
     binary[..80].fill(0);
     assert_eq!(
         error_of("m.stl", &binary[..700]),
-        "m.stl: the header promises 20 triangles, which take 1084 bytes, and the file ends after 700"
+        "m.stl: the header declares 20 triangles, which take 1084 bytes, but the file ends after 700"
     );
     binary[80..84].fill(255);
     let cut = error_of("m.stl", &binary[..700]);
-    assert!(cut.contains("promises 4294967295 triangles"), "{cut}");
+    assert!(cut.contains("declares 4294967295 triangles"), "{cut}");
     assert!(error_of("m.stl", "").contains("too short"));
     let text = text_stl();
     assert_eq!(
@@ -76,13 +76,13 @@ fn broken_stl() {
     );
     assert_eq!(
         error_of("m.stl", "solid a\nendsolid a\n"),
-        "m.stl: there are no faces with an area in this file"
+        "m.stl: this file has no faces with an area"
     );
     let mut binary = binary_stl();
     binary[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
     assert_eq!(
         error_of("m.stl", binary),
-        "m.stl: point 1 has a coordinate that is no finite number within 1e12 of 0"
+        "m.stl: point 1 has a coordinate that is not a finite number within 1e12 of 0"
     );
 }
 
@@ -91,10 +91,13 @@ fn broken_ply() {
     let text = text_ply();
     let bytes = binary_ply(false);
     for (bytes, sentence) in [
-        (b"plywood".to_vec(), ":1: this is no line of a PLY header"),
+        (
+            b"plywood".to_vec(),
+            ":1: this is not a valid line of a PLY header",
+        ),
         (
             b"solid".to_vec(),
-            ": this is no PLY file, which begins with `ply`",
+            ": not a PLY file: it does not begin with `ply`",
         ),
         (
             b"ply\nformat ascii 1.0\n".to_vec(),
@@ -102,23 +105,23 @@ fn broken_ply() {
         ),
         (
             text.replace("float x", "float q").into(),
-            ": the header gives a `vertex` no number `x`",
+            ": the element `vertex` in the header has no number `x`",
         ),
         (
             text.replace("vertex_index", "corners").into(),
-            ": the header gives a `face` no list `vertex_indices` or `vertex_index`",
+            ": the element `face` in the header has no list `vertex_indices` or `vertex_index`",
         ),
         (
             text.replace("\n3 0 ", "\n3 12 ").into(),
-            ":24: face 1 names point 12, and there are only 12, counted from 0",
+            ":24: face 1 names point 12, but there are only 12, counted from 0",
         ),
         (
             text.replace("\n3 0 ", "\n3 -1 ").into(),
-            ":24: face 1 names point -1, and there are only 12, counted from 0",
+            ":24: face 1 names point -1, but there are only 12, counted from 0",
         ),
         (
             text.replace("\n3 0 ", "\n3 zero ").into(),
-            ":24: \"zero\" is no number for vertex_index of this face",
+            ":24: \"zero\" is not a number for vertex_index of this face",
         ),
         (
             text.replace("\n3 0 ", "\n4 0 ").into(),
@@ -126,11 +129,11 @@ fn broken_ply() {
         ),
         (
             text.replace("vertex 12", "vertex 99999999999").into(),
-            ": a mesh has at most 48000000 points, this one has more",
+            ": a mesh may have at most 48000000 points; this one has more",
         ),
         (
             text.replace("face 20", "face 15000000").into(),
-            ": the header promises 15000000 of `face`, which take at least 30000000 bytes, and the file has 170 left",
+            ": the header declares 15000000 of `face`, which take at least 30000000 bytes, but the file has 170 left",
         ),
         (
             bytes[..bytes.len() - 1].to_vec(),
@@ -156,32 +159,32 @@ fn broken_gltf() {
         (
             "\"scene\":0",
             "\"scene\":7",
-            ": this is no valid glTF file: scene: Index out of bounds",
+            ": not a valid glTF file: scene: Index out of bounds",
         ),
         (
             "\"scene\":0",
             "\"scene\"0",
-            ":1: this is no valid glTF file: expected `:`",
+            ":1: not a valid glTF file: expected `:`",
         ),
         (
             "\"count\":60",
             "\"count\":6000",
-            ": accessor 1 promises 6000 items of 2 bytes, which are more than its buffer holds",
+            ": accessor 1 declares 6000 items of 2 bytes, more than its buffer holds",
         ),
         (
             "\"count\":12",
             "\"count\":4",
-            ": face 2 names point 7, and there are only 4, counted from 0",
+            ": face 2 names point 7, but there are only 4, counted from 0",
         ),
         (
             "\"count\":12",
             "\"count\":18446744073709551615",
-            ": a mesh has at most 48000000 points, this one has more",
+            ": a mesh may have at most 48000000 points; this one has more",
         ),
         (
             "\"POSITION\":0",
             "\"POSITION\":9",
-            ": a mesh has its positions in accessor 9, which is not there",
+            ": a mesh has its positions in accessor 9, which does not exist",
         ),
         (
             "5123",
@@ -196,12 +199,12 @@ fn broken_gltf() {
         (
             "\"byteOffset\":144",
             "\"byteOffset\":18446744073709551615",
-            ": accessor 1 promises 60 items of 2 bytes, which are more than its buffer holds",
+            ": accessor 1 declares 60 items of 2 bytes, more than its buffer holds",
         ),
         (
             ";base64,",
             ";base64,*",
-            ": a buffer inside the file is broken: Invalid symbol 42, offset 0.",
+            ": an embedded buffer is broken: Invalid symbol 42, offset 0.",
         ),
         ("data:app", "https://app", ": its buffer https://app"),
         (
@@ -216,11 +219,14 @@ fn broken_gltf() {
     let mut bytes = glb(&gltf_json("", ""), &[0; 264]);
     assert_eq!(
         error_of("m.glb", &bytes),
-        "m.glb: there are no faces with an area in this file"
+        "m.glb: this file has no faces with an area"
     );
-    assert!(error_of("m.glb", &bytes[..50]).contains("and the file has 50"));
+    assert!(error_of("m.glb", &bytes[..50]).contains("but the file has 50"));
     bytes[8..12].fill(0);
-    assert!(error_of("m.glb", &bytes).contains("the header promises 0 bytes"));
+    assert!(error_of("m.glb", &bytes).contains("the header declares 0 bytes"));
     let none = error_of("m.gltf", gltf_json("", ""));
-    assert_eq!(none, "m.gltf: accessor 0 names a buffer that is not there");
+    assert_eq!(
+        none,
+        "m.gltf: accessor 0 names a buffer that does not exist"
+    );
 }

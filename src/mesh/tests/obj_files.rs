@@ -69,42 +69,45 @@ fn broken_lines_are_named() {
     for (line, sentence) in [
         (
             "f 1 2 900",
-            "this face names point 900, and there are only 4",
+            "this face names point 900, but there are only 4",
         ),
         (
             "f 1 2 -5",
-            "this face names point -5, and there are only 4 before it",
+            "this face names point -5, but there are only 4 before it",
         ),
         (
             "f 0 1 2",
             "this face names point 0; points are counted from 1",
         ),
-        ("f 1 2 x", "the corner \"x\" of this face names no point"),
+        (
+            "f 1 2 x",
+            "the corner \"x\" of this face is not the number of a point",
+        ),
         (
             "f 1 2 99999999999999999999",
-            "the corner \"99999999999999999999\" of this face names no point",
+            "the corner \"99999999999999999999\" of this face is not the number of a point",
         ),
         (
             "f 1/x 2 3",
             "the corner \"1/x\" of this face is not written like 1, 1/2, 1//3 or 1/2/3",
         ),
         ("v 1 2", "a point needs three coordinates"),
-        ("v 1 2 abc", "the coordinate \"abc\" is no finite number"),
+        ("v 1 2 abc", "the coordinate \"abc\" is not a finite number"),
     ] {
         assert_eq!(wrong(line), format!("m.obj:6: {sentence}"));
     }
     let not_finite = format!("{SQUARE}v 1 NaN 0\nf 1 2 5\n");
     assert_eq!(
         error_of("m.obj", not_finite),
-        "m.obj:5: the coordinate \"NaN\" is no finite number"
+        "m.obj:5: the coordinate \"NaN\" is not a finite number"
     );
     assert_eq!(
         error_of("m.obj", SQUARE),
-        "m.obj: there are no faces with an area in this file"
+        "m.obj: this file has no faces with an area"
     );
     assert_eq!(
         error_of("m.obj", ""),
-        "m.obj: there are no faces with an area in this file"
+        "m.obj: this file has no faces with an area"
     );
 }
 
@@ -195,7 +198,7 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     assert_eq!(colors, [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
     assert!(sample.notes().is_empty());
     sample.beside("some.mtl", "newmtl red\nKd 1 0 0\n");
-    let unknown = "no material file of it has Material #25, which it names";
+    let unknown = "it uses the material Material #25, which is in none of its material files";
     assert_eq!(sample.notes(), [unknown]);
     // A link that leads out of the folder is not followed, whatever the case of its name.
     #[cfg(unix)]
@@ -263,7 +266,7 @@ fn material_files_are_found_by_the_paths_of_other_machines() {
     let early = format!("{SQUARE}usemtl red\nf 1 2 3\nmtllib m.mtl\n");
     let sample = Sample::new("m.obj", early);
     sample.beside("m.mtl", "newmtl red\nKd 1 0 0\n");
-    let told = "some colours are missing: it names red before its material file";
+    let told = "some colours are missing: it uses red before naming its material file";
     assert_eq!(sample.notes(), [told]);
 }
 
@@ -322,6 +325,6 @@ fn faces_with_too_many_corners_to_be_cut_are_told() {
         Sample::new("m.obj", format!("{points}f {}\n", face.join(" "))).notes()
     };
     assert!(star(2000).is_empty());
-    let told = "1 face with more than 4096 corners may cover their notches";
+    let told = "1 face with more than 4096 corners may be filled in where they are concave";
     assert_eq!(star(4098), [told]);
 }

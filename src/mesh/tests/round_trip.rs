@@ -112,7 +112,7 @@ fn nothing_beside_the_folder_is_read() {
         let path = place("m.gltf", gltf_json("", &format!(r#","uri":"{name}""#)));
         let error = read_mesh_file(&path).expect_err("refused").to_string();
         assert!(
-            error.contains("must lie in the folder of the file"),
+            error.contains("must be in the folder of the file"),
             "{error}"
         );
     }

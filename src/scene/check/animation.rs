@@ -105,23 +105,21 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
         };
         if let Some(what) = what.filter(|_| is_orbit) {
             let at = here.field("interpolation");
-            return at.refuse(format!(
-                "{what} goes around no point: give it Smooth or Linear"
-            ));
+            return at.refuse(format!("{what} cannot orbit a point: use Smooth or Linear"));
         }
         let at = here.field("value");
         match (key.value, sample) {
             (Value::Number(number), Value::Number(_)) => at.within(number, 0.0..=1.0)?,
             (Value::Point(point), Value::Point(_)) => at.point(point)?,
             (_, Value::Number(_)) => {
-                return at.refuse("an intensity is one number, 0–1".to_owned());
+                return at.refuse("an intensity must be one number, 0–1".to_owned());
             }
             (_, Value::Point(_)) => {
                 let what = match track.target {
                     Target::ObjectRotation(_) => "a rotation",
                     _ => "a position",
                 };
-                return at.refuse(format!("{what} is three numbers such as (1, 2, 3)"));
+                return at.refuse(format!("{what} must be three numbers such as (1, 2, 3)"));
             }
         }
     }
@@ -131,7 +129,7 @@ fn check_track(at: &At, sample: Value, track: &Track) -> Check {
 fn check_take(at: &At, take: &Take) -> Check {
     let here = at.field("samples");
     if take.samples.is_empty() || take.samples.len() > MAX_KEYS {
-        return here.refuse(format!("a take has between 1 and {MAX_KEYS} samples"));
+        return here.refuse(format!("a take must have between 1 and {MAX_KEYS} samples"));
     }
     let mut last = -1.0;
     for (index, sample) in take.samples.iter().enumerate() {
@@ -153,7 +151,7 @@ fn check_take(at: &At, take: &Take) -> Check {
         if (index == 0 && lens.from != 0) || lens.from < next {
             return at
                 .field("from")
-                .refuse("lenses start at sample 0 and are in order".to_owned());
+                .refuse("lenses must start at sample 0 and be in order".to_owned());
         }
         if lens.from >= take.samples.len() {
             let most = take.samples.len() - 1;

@@ -54,7 +54,7 @@ pub fn check_edit(scene: &Scene, valid: &Scene) -> Result<(), Problem> {
     }
     let (limit, bytes) = (MAX_BYTES >> 20, bytes.div_ceil(1 << 20));
     At::root().field("objects").refuse(format!(
-        "the triangles of all objects would take {bytes} of the {limit} MiB that a scene file has at most, and could not be saved"
+        "the triangles of all objects would take {bytes} MiB, but a scene file can have at most {limit} MiB: they could not be saved"
     ))
 }
 
@@ -243,7 +243,7 @@ fn check_name(at: &At, name: &str) -> Check {
     }
     if name.chars().any(char::is_control) {
         return at.refuse(format!(
-            "a name must not hold control characters, found {name:?}"
+            "a name must not contain control characters, found {name:?}"
         ));
     }
     if name.chars().count() > MAX_NAME {

@@ -167,7 +167,7 @@ impl<'a> At<'a> {
     /// Checks scale factors: no component may be close to zero.
     pub fn factors(&self, value: DVec3) -> Check {
         let is_factor = |factor: f64| (1.0 / MAX_FACTOR..=MAX_FACTOR).contains(&factor.abs());
-        let words = "must have factors between 1e-6 and 1e6, or as much below 0";
+        let words = "must have factors between 1e-6 and 1e6, or -1e6 and -1e-6";
         self.each(value, is_factor, words)
     }
 
@@ -186,7 +186,7 @@ impl<'a> At<'a> {
 
     /// Checks a direction: it must not be zero, and its components are limited like coordinates.
     pub fn direction(&self, value: DVec3) -> Check {
-        self.bounded(value, "must have parts of at most 1e12")?;
+        self.bounded(value, "must have components of at most 1e12")?;
         match unit(value) {
             Some(_) => Ok(()),
             None => self.refuse(format!(

@@ -37,12 +37,12 @@ impl Describe for Disc {
     fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
         visit(Property {
             name: "center",
-            hint: "The middle of the disc, in world units",
+            hint: "Center of the disc, in world units",
             value: PropertyValue::Point(&mut self.center),
         });
         visit(Property {
             name: "normal",
-            hint: "Direction across the disc; its length does not matter",
+            hint: "Direction perpendicular to the disc; its length does not matter",
             value: PropertyValue::Direction(&mut self.normal),
         });
         visit(Property {

@@ -125,7 +125,7 @@ impl<'de> Deserialize<'de> for Mesh {
         let source = match text.file {
             Some(_) if !text.points.is_empty() || !text.faces.is_empty() => {
                 return Err(D::Error::custom(
-                    "a mesh has either a file or points and faces, this one has both",
+                    "a mesh has either a file or points and faces; this one has both",
                 ));
             }
             Some(path) => MeshSource::unread(path),
@@ -259,7 +259,7 @@ impl Describe for Mesh {
     fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
         visit(Property {
             name: "position",
-            hint: "Where the origin of the mesh is, in world units",
+            hint: "Position of the origin of the mesh, in world units",
             value: PropertyValue::Point(&mut self.position),
         });
         visit(Property {
@@ -269,12 +269,12 @@ impl Describe for Mesh {
         });
         visit(Property {
             name: "scale",
-            hint: "Factors along x, y and z, before the rotation; none is 0",
+            hint: "Factors along x, y and z, applied before the rotation; not 0",
             value: PropertyValue::Factors(&mut self.scale),
         });
         visit(Property {
             name: "smooth",
-            hint: "Degrees between faces below which they are shaded as one curved surface; 0 shows them flat",
+            hint: "Faces that meet at less than this angle, in degrees, are shaded as one curved surface; 0 shows them flat",
             value: PropertyValue::Angle(&mut self.smooth),
         });
     }
@@ -397,7 +397,7 @@ mod tests {
             let MeshSource::File { problem, .. } = mesh.source else {
                 panic!("still a file");
             };
-            assert!(problem.is_some_and(|said| said.contains("must lie in the folder")));
+            assert!(problem.is_some_and(|said| said.contains("must be in the folder")));
         }
     }
 

@@ -75,10 +75,10 @@ impl MeshSource {
         *marks = allowed.and_then(|folder| marks_of_mesh(&folder.join(&path)));
         let read = match folder {
             None => Err(format!(
-                "cannot read {path}: the scene has no folder before it is saved"
+                "cannot read {path}: the scene has no folder until it is saved"
             )),
             Some(_) if allowed.is_none() => Err(format!(
-                "{path} is not read: a mesh file must lie in the folder of the scene, or in one within it"
+                "{path} is not read: a mesh file must be in the folder of the scene, or below it"
             )),
             Some(folder) => {
                 let read = || match read_triangles(&folder.join(&path)) {

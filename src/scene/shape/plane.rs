@@ -38,7 +38,7 @@ impl Describe for Plane {
         });
         visit(Property {
             name: "normal",
-            hint: "Direction across the plane; its length does not matter",
+            hint: "Direction perpendicular to the plane; its length does not matter",
             value: PropertyValue::Direction(&mut self.normal),
         });
     }

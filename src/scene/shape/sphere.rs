@@ -60,7 +60,7 @@ impl Describe for Sphere {
     fn fields<'a>(&'a mut self, visit: &mut dyn FnMut(Property<'a>)) {
         visit(Property {
             name: "center",
-            hint: "The middle of the ball, in world units",
+            hint: "Center of the sphere, in world units",
             value: PropertyValue::Point(&mut self.center),
         });
         visit(Property {

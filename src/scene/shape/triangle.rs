@@ -67,7 +67,7 @@ impl Describe for Triangle {
         for (name, corner) in [("a", &mut self.a), ("b", &mut self.b), ("c", &mut self.c)] {
             visit(Property {
                 name,
-                hint: "A corner; clockwise seen from outside",
+                hint: "A corner; clockwise as seen from outside",
                 value: PropertyValue::Point(corner),
             });
         }

@@ -132,7 +132,7 @@ fn a_picture_in_strips_has_the_same_bits() {
         };
         let control = RenderControl::default();
         let tracer = Tracer {
-            strip: 3,
+            strip_rows: 3,
             ..Tracer::new(&scene, &request)
         };
         let mut whole = vec![[0_u64; 3]; 83 * 61];
@@ -163,9 +163,9 @@ fn a_large_picture_is_no_more_than_a_strip_in_memory() {
     for (width, height) in [(16_384, 16_384), (16_384, 1), (1, 16_384), (2048, 2048)] {
         let tracer = Tracer::new(&Scene::demo(), &RenderRequest::sized(width, height));
         let strip = tracer.strip();
-        assert!(strip * width as usize <= STRIP.max(SQUARE * width as usize));
+        assert!(strip * width as usize <= MAX_STRIP_PIXELS.max(EXR_SQUARE * width as usize));
         let is_whole = strip >= height as usize;
-        assert!(is_whole || strip.is_multiple_of(SQUARE), "{strip}");
+        assert!(is_whole || strip.is_multiple_of(EXR_SQUARE), "{strip}");
         assert_eq!(is_whole, width < 16_384 || height == 1);
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Image as Picture, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::order::{EXPORT, ExportOrder, UNKEPT};
+use super::order::{EXPORT_TOPIC, ExportOrder, UNSTORED_TOPIC};
 use super::progress::show_state;
 use super::video_maker::{VideoMaker, VideoState};
 use crate::editor::Editor;
@@ -38,7 +38,7 @@ impl Entry {
     /// Creates the entry of an order whose frames are `sequence`.
     pub fn new(id: u64, order: ExportOrder, sequence: Sequence) -> Self {
         let (video, files) = (order.settings.video(&sequence), files_of(&sequence));
-        let frames = ends_of(&sequence);
+        let frames = frame_range(&sequence);
         let video = video.map(|(path, video)| VideoMaker::new(sequence, path, video));
         Self {
             id,
@@ -57,7 +57,7 @@ impl Entry {
     }
 
     /// Describes what follows the frames, in words; `None` if the export is over.
-    pub fn describe_rest(&self) -> Option<String> {
+    pub fn describe_after_frames(&self) -> Option<String> {
         self.order.as_ref()?;
         let Some(video) = &self.video else {
             return Some("export".to_owned());
@@ -76,12 +76,12 @@ impl Entry {
 
     /// Returns whether this export is still running and writes files that the given frames or video would write as
     /// well.
-    pub fn is_in_the_way_of(&self, sequence: &Sequence, video: Option<&Path>) -> bool {
-        let frames = ends_of(sequence);
-        let meets = self.frames.0 <= frames.1 && frames.0 <= self.frames.1;
-        let own = self.video.as_ref().map(|video| video.path.as_path());
-        let has_video = video.is_some() && own == video;
-        !self.is_over() && (has_video || meets && self.writes_files_of(sequence))
+    pub fn conflicts_with(&self, sequence: &Sequence, video: Option<&Path>) -> bool {
+        let frames = frame_range(sequence);
+        let overlaps = self.frames.0 <= frames.1 && frames.0 <= self.frames.1;
+        let own_video = self.video.as_ref().map(|video| video.path.as_path());
+        let is_same_video = video.is_some() && own_video == video;
+        !self.is_over() && (is_same_video || overlaps && self.writes_files_of(sequence))
     }
 
     /// Advances to the next step. `state` is the worker's state of the frames, `None` if they were cancelled.
@@ -95,8 +95,8 @@ impl Entry {
         if let Some(why) = problem {
             let name = &self.name;
             editor.report_error_in(
-                UNKEPT,
-                format!("{name} cannot be kept ({why}): if Glint ends before it is done, it has to be asked for again"),
+                UNSTORED_TOPIC,
+                format!("{name} cannot be stored ({why}): if Glint quits before it is done, it must be started again"),
             );
         }
         if let Some(video) = &mut self.video
@@ -109,12 +109,12 @@ impl Entry {
                 }
                 VideoState::Stopped => {
                     let path = video.path.display();
-                    editor.notify(format!("{path} is given up; its frames stay"));
+                    editor.notify(format!("{path} was cancelled; its frames are kept"));
                     self.end();
                 }
                 VideoState::Failed(error) => {
                     let error = error.clone();
-                    editor.report_error_in(EXPORT, error.clone());
+                    editor.report_error_in(EXPORT_TOPIC, error.clone());
                     return self.order.take().map(|order| order.failed(error));
                 }
                 VideoState::Waiting | VideoState::Making(_) => {}
@@ -125,7 +125,7 @@ impl Entry {
             if let Some(ExportOrder { name, settings, .. }) = &self.order {
                 let folder = &settings.folder;
                 editor.notify(format!(
-                    "{name} is given up; what is done of it stays in {folder}"
+                    "{name} was cancelled; finished frames are kept in {folder}"
                 ));
             }
             self.end();
@@ -142,9 +142,8 @@ impl Entry {
                 None
             }
             Err(error) => {
-                let on =
-                    "what is done stays, and Resume in the window of exports goes on from there";
-                editor.report_error_in(EXPORT, format!("{error}; {on}"));
+                let resume_hint = "finished frames are kept; Resume in the Export animation window continues from there";
+                editor.report_error_in(EXPORT_TOPIC, format!("{error}; {resume_hint}"));
                 let why = error.clone();
                 self.order.take().map(|order| order.failed(why))
             }
@@ -172,14 +171,14 @@ impl Entry {
             let shown = ui.vertical(|ui| show_state(ui, &self.name, state, video, pictures));
             shown.inner
         });
-        let is_asked = row.inner;
-        let beside = self.video.as_ref().and_then(|video| video.path.parent());
-        let folder = beside.unwrap_or(&state.folder);
-        if is_asked && open::that_detached(folder).is_err() {
+        let opens_folder = row.inner;
+        let video_folder = self.video.as_ref().and_then(|video| video.path.parent());
+        let folder = video_folder.unwrap_or(&state.folder);
+        if opens_folder && open::that_detached(folder).is_err() {
             let folder = folder.display();
             editor.report_error_in(
-                EXPORT,
-                format!("This desktop has no program that shows {folder}"),
+                EXPORT_TOPIC,
+                format!("This desktop has no program to open {folder}"),
             );
         }
     }
@@ -190,16 +189,16 @@ impl Entry {
             ui.allocate_space(vec2(THUMB, THUMB));
             return;
         };
-        let at = state.done.written;
-        let (when, texture) = self.thumb.get_or_insert_with(|| {
+        let written = state.done.written;
+        let (made_for, texture) = self.thumb.get_or_insert_with(|| {
             let load = |name| {
                 ui.ctx()
                     .load_texture(name, whole(image), TextureOptions::LINEAR)
             };
-            (at, load("exported"))
+            (written, load("exported"))
         });
-        if *when != at {
-            *when = at;
+        if *made_for != written {
+            *made_for = written;
             texture.set(whole(image), TextureOptions::LINEAR);
         }
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
@@ -207,7 +206,7 @@ impl Entry {
 }
 
 /// The first and the last frame number of a sequence.
-fn ends_of(sequence: &Sequence) -> (u64, u64) {
+fn frame_range(sequence: &Sequence) -> (u64, u64) {
     let first = sequence.frames.iter().next().unwrap_or(1);
     (first, sequence.frames.last().unwrap_or(first))
 }

@@ -29,7 +29,7 @@ const NO_VIDEO: &str = "none";
 
 /// The settings that follow from the scene itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Own {
+struct SceneDefaults {
     /// Length of its animation.
     #[serde(default)]
     seconds: f64,
@@ -44,7 +44,7 @@ fn usual_sampling() -> Sampling {
     Sampling::ADAPTIVE
 }
 
-impl Own {
+impl SceneDefaults {
     /// The range of all frames at a frame rate, in the notation of the field.
     fn frames(&self, fps: f64) -> String {
         match Animation::frames_in(self.seconds, fps) {
@@ -72,7 +72,7 @@ pub struct Settings {
     is_free: bool,
     fps: f64,
     /// The scene's own settings when these were made.
-    own: Own,
+    own: SceneDefaults,
     #[serde(with = "crate::scene::method")]
     antialias: Sampling,
     #[serde(serialize_with = "write_video", deserialize_with = "read_video")]
@@ -113,11 +113,14 @@ impl Settings {
     pub fn of(editor: &Editor) -> Self {
         let scene = editor.scene();
         // A path below the working directory is shown relative to it.
-        let here = std::env::current_dir().unwrap_or_default();
-        let folder = editor.path().and_then(Path::parent).unwrap_or(&here);
-        let folder = folder.strip_prefix(&here).unwrap_or(folder);
+        let working_folder = std::env::current_dir().unwrap_or_default();
+        let folder = editor
+            .path()
+            .and_then(Path::parent)
+            .unwrap_or(&working_folder);
+        let folder = folder.strip_prefix(&working_folder).unwrap_or(folder);
         let stem = editor.stem();
-        let own = Own {
+        let own = SceneDefaults {
             seconds: scene.animation.duration(),
             size: (scene.render.width, scene.render.height),
             fps: scene.animation.frames_per_second,
@@ -139,7 +142,7 @@ impl Settings {
     }
 
     /// The same settings with an absolute folder.
-    pub fn at_home(self) -> Self {
+    pub fn with_absolute_folder(self) -> Self {
         let folder = absolute(&typed_path(&self.folder));
         let folder = folder.display().to_string();
         Self { folder, ..self }
@@ -247,9 +250,9 @@ impl Settings {
     }
 }
 
-/// `side * times / through`, rounded, within the limits of a picture's side.
-fn scaled(side: u32, times: u32, through: u32) -> u32 {
-    let length = f64::from(side) * f64::from(times) / f64::from(through);
+/// `side * numerator / denominator`, rounded, within the limits of a picture's side.
+fn scaled(side: u32, numerator: u32, denominator: u32) -> u32 {
+    let length = f64::from(side) * f64::from(numerator) / f64::from(denominator);
     (length.round() as u32).clamp(1, MAX_SIDE)
 }
 
@@ -280,18 +283,18 @@ pub enum SettingsError {
 pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
     ui.horizontal(|ui| {
         ui.weak("Presets");
-        let own = (scene.render.width, scene.render.height);
-        for (name, hint, format, antialias, half) in [
+        let scene_size = (scene.render.width, scene.render.height);
+        for (name, hint, format, antialias, is_half) in [
             (
                 "PPM",
-                "As the original program: one sample, rayTrace%d.ppm",
+                "Like the original program: one sample, rayTrace%d.ppm",
                 Format::Ppm,
                 Sampling::Centres,
                 false,
             ),
             (
                 "PNG",
-                "Clean edges, compressed, numbers of four digits",
+                "Clean edges, compressed, four-digit numbers",
                 Format::Png,
                 Sampling::ADAPTIVE,
                 false,
@@ -315,8 +318,8 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
                 };
                 name.clone_into(&mut settings.name);
                 settings.antialias = antialias;
-                let size = |side: u32| if half { side.div_ceil(2) } else { side };
-                (settings.width, settings.height) = (size(own.0), size(own.1));
+                let size = |side: u32| if is_half { side.div_ceil(2) } else { side };
+                (settings.width, settings.height) = (size(scene_size.0), size(scene_size.1));
             }
         }
     });
@@ -345,10 +348,10 @@ pub fn fields(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
 }
 
 fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
-    let whole = absolute(&typed_path(&settings.folder));
+    let absolute_folder = absolute(&typed_path(&settings.folder));
     let field = TextEdit::singleline(&mut settings.folder).align(Align2::LEFT_CENTER);
     ui.add_sized([FIELDS - 90.0, ROW], field)
-        .hint(whole.display().to_string())
+        .hint(absolute_folder.display().to_string())
         .accessible_name("folder");
     if ui.button("Browse…").clicked() {
         out.commands.push(Command::Ask(Ask::ExportFolder));
@@ -358,7 +361,7 @@ fn folder(ui: &mut Ui, settings: &mut Settings, out: &mut UiRequests) {
 fn names(ui: &mut Ui, settings: &mut Settings) {
     let name = TextEdit::singleline(&mut settings.name).align(Align2::LEFT_CENTER);
     ui.add_sized([140.0, ROW], name)
-        .hint("%d is the number, %05d the number with five digits")
+        .hint("%d is the frame number, %05d the same with five digits")
         .accessible_name("names");
     if let (Ok(pattern), Ok(frames)) = (
         Pattern::parse(&settings.name),
@@ -395,8 +398,8 @@ fn picture(ui: &mut Ui, settings: &mut Settings) {
     settings.set_size(size);
     let mut keeps_shape = !settings.is_free;
     ui.toggle_value(&mut keeps_shape, icons::text(icons::LINK))
-        .accessible_name("keep the shape of the picture")
-        .hint("Width and height follow each other, in the shape of the scene's picture");
+        .accessible_name("keep aspect ratio")
+        .hint("Width and height follow each other, in the aspect ratio of the scene's picture");
     settings.is_free = !keeps_shape;
     ComboBox::from_id_salt("export antialias")
         .selected_text(settings.antialias.id())
@@ -414,7 +417,7 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
     let mut fps = settings.fps;
     let field = Field {
         name: "export frames per second",
-        hint: "Of the frames and the video; the flight stays as it is",
+        hint: "Of the frames and the video; the flight does not change",
         unit: " fps",
         default: fps,
         range: FRAME_RATES,
@@ -425,8 +428,8 @@ fn time_and_video(ui: &mut Ui, settings: &mut Settings) {
     ui.weak("video");
     for video in std::iter::once(None).chain(Video::ALL.map(Some)) {
         let hint = match video {
-            None => "Only frames",
-            Some(video) if video.needs_ffmpeg() => "Made by ffmpeg, if that is installed",
+            None => "Frames only",
+            Some(video) if video.needs_ffmpeg() => "Made by ffmpeg, if it is installed",
             Some(_) => "Made by Glint itself",
         };
         ui.selectable_value(&mut settings.video, video, video_word(video))

@@ -17,17 +17,17 @@ use crate::words::counted;
 use crate::worker::Background;
 
 /// Approximate size of a PNG relative to a PPM, used until it is measured on a picture.
-const PNG_SHARE: f64 = 0.35;
+const PNG_SIZE_RATIO: f64 = 0.35;
 /// Approximate size of an EXR relative to its channels in memory (32-bit floats).
-const EXR_SHARE: f64 = 0.6;
+const EXR_SIZE_RATIO: f64 = 0.6;
 
 /// Maximum pixels of the frame that is traced to measure the time per frame; fewer if they would take more than a
 /// second.
-const MEASURED: f64 = 1.5e6;
+const MAX_SAMPLE_PIXELS: f64 = 1.5e6;
 /// Minimum pixels of that frame.
-const LEAST: f64 = 4096.0;
-/// If [`LEAST`] pixels take less than this, in seconds, the measurement is repeated.
-const SHORT: f64 = 2e-3;
+const MIN_SAMPLE_PIXELS: f64 = 4096.0;
+/// If [`MIN_SAMPLE_PIXELS`] pixels take less than this, in seconds, the measurement is repeated.
+const REPEAT_BELOW_SECONDS: f64 = 2e-3;
 
 /// Frames of a sequence that are missing from their folder or differ from what they should be.
 #[derive(Default)]
@@ -37,7 +37,7 @@ struct Missing {
     /// The number of them that replace other files.
     replaced: usize,
     /// Whether the video replaces an existing file.
-    has_video: bool,
+    replaces_video: bool,
     /// Whether the last frame shows the same as the first.
     is_loop: bool,
 }
@@ -46,72 +46,72 @@ struct Missing {
 #[derive(Default)]
 struct Speed {
     /// Size of a PNG relative to a PPM.
-    png_share: Option<f64>,
+    png_size_ratio: Option<f64>,
     /// Seconds per frame.
-    frame: Option<f64>,
+    frame_seconds: Option<f64>,
     /// Seconds to encode the video.
-    video: Option<f64>,
+    video_seconds: Option<f64>,
 }
 
 /// Estimates for the current export settings, computed on other threads.
 #[derive(Default)]
 pub struct Forecast {
     /// The settings, the scene's revision and the number of ended exports that the folder was last examined for.
-    sought: Option<(Settings, u64, usize)>,
-    looking: Background<Result<Missing, String>>,
-    found: Option<Result<Missing, String>>,
+    examined_for: Option<(Settings, u64, usize)>,
+    examining: Background<Result<Missing, String>>,
+    folder_state: Option<Result<Missing, String>>,
     /// Revision and width of the picture that is measured, and the export settings it is measured for.
-    subject: Option<(u64, usize, Settings)>,
+    measured_for: Option<(u64, usize, Settings)>,
     measuring: Background<Speed>,
-    sample: Speed,
+    speed: Speed,
 }
 
 impl Forecast {
     /// Returns whether anything is still being computed.
     pub fn is_busy(&self) -> bool {
-        self.looking.is_awaited() || self.measuring.is_awaited()
+        self.examining.is_awaited() || self.measuring.is_awaited()
     }
 
     /// Forgets what is known about the folder, as its content is about to change.
     pub fn forget_folder(&mut self) {
-        (self.sought, self.found) = (None, None);
+        (self.examined_for, self.folder_state) = (None, None);
     }
 
     /// Takes over results that have arrived.
     pub fn update(&mut self) {
-        if let Some(answer) = self.looking.take() {
-            self.found = Some(answer.unwrap_or_else(|no_answer| Err(no_answer.to_string())));
+        if let Some(answer) = self.examining.take() {
+            self.folder_state = Some(answer.unwrap_or_else(|no_answer| Err(no_answer.to_string())));
         }
-        if let Some(Ok(sample)) = self.measuring.take() {
-            self.sample = sample;
+        if let Some(Ok(speed)) = self.measuring.take() {
+            self.speed = speed;
         }
     }
 
     /// Examines what is already in the folder; `ended` is the number of exports that have ended and may have
     /// changed it.
-    pub fn look(
+    pub fn examine_folder(
         &mut self,
         (settings, sequence): (&Settings, &Sequence),
         editor: &Editor,
         ended: usize,
     ) {
-        let sought = (settings.clone(), editor.revision(), ended);
-        if self.looking.is_awaited() || self.sought.as_ref() == Some(&sought) {
+        let examined_for = (settings.clone(), editor.revision(), ended);
+        if self.examining.is_awaited() || self.examined_for.as_ref() == Some(&examined_for) {
             return;
         }
-        (self.sought, self.found) = (Some(sought), None);
+        (self.examined_for, self.folder_state) = (Some(examined_for), None);
         let (sequence, video) = (sequence.clone(), settings.video(sequence));
-        let look = move || {
-            let has_video = video.as_ref().is_some_and(|(path, _)| path.exists());
+        let examine = move || {
+            let replaces_video = video.as_ref().is_some_and(|(path, _)| path.exists());
             let is_loop = video.is_some() && sequence.is_loop();
             let missing = missing(&sequence)?;
             Ok(Missing {
-                has_video,
+                replaces_video,
                 is_loop,
                 ..missing
             })
         };
-        self.looking = Background::start("glint-look", look);
+        self.examining = Background::start("glint-look", examine);
     }
 
     /// Measures the size and the encoding time of frames, taking the finished picture on screen as typical of them.
@@ -123,14 +123,14 @@ impl Forecast {
     ) {
         let frame = pictures.whole(editor);
         // A picture of 64 pixels says little about larger ones, and during playback the estimate is not urgent.
-        let is_meant = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
-        let Some(frame) = frame.filter(|_| is_meant && !self.measuring.is_awaited()) else {
+        let is_wanted = editor.mode != Mode::LowRes && !editor.timeline().is_playing;
+        let Some(frame) = frame.filter(|_| is_wanted && !self.measuring.is_awaited()) else {
             return;
         };
-        let subject = (frame.revision, frame.image.width, settings.unnamed());
-        if self.subject.as_ref() != Some(&subject) {
-            (self.sample.frame, self.sample.video) = (None, None);
-            self.subject = Some(subject);
+        let measured_for = (frame.revision, frame.image.width, settings.unnamed());
+        if self.measured_for.as_ref() != Some(&measured_for) {
+            (self.speed.frame_seconds, self.speed.video_seconds) = (None, None);
+            self.measured_for = Some(measured_for);
             let (image, video) = (Arc::clone(&frame.image), settings.video);
             let sequence = sequence.clone();
             let measure = move || Speed::of(&image, &sequence, video);
@@ -141,21 +141,21 @@ impl Forecast {
     /// Describes the estimate in words.
     pub fn describe(&self, settings: &Settings, sequence: &Sequence) -> String {
         let total = sequence.frames.count();
-        let (missing, what) = match &self.found {
+        let (missing, frames_text) = match &self.folder_state {
             None => (
                 total,
-                format!("{}, looking into the folder…", counted(total, "frame")),
+                format!("{}, checking the folder…", counted(total, "frame")),
             ),
             Some(Err(error)) => (total, error.clone()),
             Some(Ok(Missing { count: 0, .. })) => {
-                (0, format!("all {} are there", counted(total, "frame")))
+                (0, format!("all {} already exist", counted(total, "frame")))
             }
             Some(Ok(missing)) => (missing.count, missing.describe(total)),
         };
         let pixels = f64::from(settings.width) * f64::from(settings.height);
-        let own = settings.unnamed();
-        let is_of_this = |(.., of): &(u64, usize, Settings)| *of == own;
-        let is_known = self.subject.as_ref().is_some_and(is_of_this);
+        let unnamed = settings.unnamed();
+        let is_current = |(.., of): &(u64, usize, Settings)| *of == unnamed;
+        let is_known = self.measured_for.as_ref().is_some_and(is_current);
         let about = |seconds: Option<f64>| {
             seconds.map_or(String::new(), |seconds| {
                 format!(", about {}", time_in_words(seconds))
@@ -165,37 +165,41 @@ impl Forecast {
             String::new()
         } else {
             let megabytes = pixels * self.bytes(settings.format) * missing as f64 / 1e6;
-            let frame = self.sample.frame.filter(|_| is_known);
+            let frame = self.speed.frame_seconds.filter(|_| is_known);
             let seconds = frame.map(|seconds| seconds * missing as f64);
             format!("{}, {megabytes:.0} MB", about(seconds))
         };
         let video = settings.video(sequence).map(|(path, video)| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let time = about(self.sample.video.filter(|_| is_known));
+            let time = about(self.speed.video_seconds.filter(|_| is_known));
             let remark = video.check(sequence).ok().flatten();
             let remark = remark.map_or(String::new(), |remark| format!("; {remark}"));
-            let missing = self.found.as_ref().and_then(|found| found.as_ref().ok());
+            let missing = self
+                .folder_state
+                .as_ref()
+                .and_then(|folder_state| folder_state.as_ref().ok());
             let replaced = match missing {
                 Some(Missing {
-                    has_video: true, ..
-                }) => " in place of an older one",
+                    replaces_video: true,
+                    ..
+                }) => " (replaces an older one)",
                 _ => "",
             };
-            let looped = match missing {
+            let loop_hint = match missing {
                 Some(Missing { is_loop: true, .. }) => format!("; {LOOP_HINT}"),
                 _ => String::new(),
             };
-            format!(", then {name}{replaced}{time}{remark}{looped}")
+            format!(", then {name}{replaced}{time}{remark}{loop_hint}")
         });
-        format!("{what}{frames}{}", video.unwrap_or_default())
+        format!("{frames_text}{frames}{}", video.unwrap_or_default())
     }
 
     /// Bytes per pixel of a file.
     fn bytes(&self, format: Format) -> f64 {
         match format {
             Format::Ppm => 3.0,
-            Format::Png => 3.0 * self.sample.png_share.unwrap_or(PNG_SHARE),
-            Format::Exr => 12.0 * EXR_SHARE,
+            Format::Png => 3.0 * self.speed.png_size_ratio.unwrap_or(PNG_SIZE_RATIO),
+            Format::Exr => 12.0 * EXR_SIZE_RATIO,
         }
     }
 }
@@ -203,17 +207,17 @@ impl Forecast {
 impl Missing {
     /// Describes the missing frames, out of `total`.
     fn describe(&self, total: usize) -> String {
-        let stay = match total - self.count {
+        let kept = match total - self.count {
             0 => String::new(),
-            1 => ", 1 is there and stays".to_owned(),
-            there => format!(", {there} are there and stay"),
+            1 => ", 1 exists and is kept".to_owned(),
+            existing => format!(", {existing} exist and are kept"),
         };
-        let replace = match self.replaced {
+        let replacing = match self.replaced {
             0 => String::new(),
             1 => ", 1 replaces an older file".to_owned(),
             replaced => format!(", {replaced} replace older files"),
         };
-        format!("{} to make{stay}{replace}", counted(self.count, "frame"))
+        format!("{} to make{kept}{replacing}", counted(self.count, "frame"))
     }
 }
 
@@ -225,21 +229,22 @@ impl Speed {
         let since = Instant::now();
         let encoded = image.encode(Format::Png, &mut file);
         // Encoding takes one thread, while the others trace.
-        let packing = since.elapsed().as_secs_f64() / pixels / Threads::available() as f64;
-        let packing = match sequence.format {
+        let encoding = since.elapsed().as_secs_f64() / pixels / Threads::available() as f64;
+        let encoding = match sequence.format {
             Format::Ppm => 0.0,
-            Format::Png | Format::Exr => packing,
+            Format::Png | Format::Exr => encoding,
         };
         let (width, height) = sequence.size();
-        let whole = f64::from(width) * f64::from(height);
-        let frame = seconds_of_frame(sequence).map(|seconds| seconds + packing * whole);
+        let pixel_count = f64::from(width) * f64::from(height);
+        let frame_seconds =
+            seconds_of_frame(sequence).map(|seconds| seconds + encoding * pixel_count);
         let time = video.and_then(|video| video.forecast(sequence, image, video_threads()));
         Self {
-            png_share: encoded
+            png_size_ratio: encoded
                 .ok()
                 .map(|()| file.into_inner().len() as f64 / (3.0 * pixels)),
-            frame,
-            video: time.map(|time| time.as_secs_f64()),
+            frame_seconds,
+            video_seconds: time.map(|time| time.as_secs_f64()),
         }
     }
 }
@@ -248,12 +253,12 @@ impl Speed {
 /// would take long, in a smaller one.
 fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
     let (width, height) = sequence.size();
-    let whole = f64::from(width) * f64::from(height);
+    let pixel_count = f64::from(width) * f64::from(height);
     let (mut planner, mut image) = (Planner::default(), Image::default());
-    let mut seconds_of = |frame: u64, most: f64| {
+    let mut seconds_of = |frame: u64, max_pixels: f64| {
         let shown = sequence.shown(frame);
-        let smaller = (most / whole).sqrt().min(1.0);
-        let side = |side: u32| (f64::from(side) * smaller).ceil() as u32;
+        let reduction = (max_pixels / pixel_count).sqrt().min(1.0);
+        let side = |side: u32| (f64::from(side) * reduction).ceil() as u32;
         let request = RenderRequest::of(&shown, side(width), side(height));
         let control = RenderControl::default();
         let cost = render_into(&mut image, &mut planner, &shown, &request, &control)?;
@@ -262,16 +267,20 @@ fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
     let mut frames = sequence.frames.iter().skip(sequence.frames.count() / 2);
     let first = frames.next()?;
     let next = frames.next().unwrap_or(first);
-    seconds_of(first, LEAST)?;
+    seconds_of(first, MIN_SAMPLE_PIXELS)?;
     // Mostly the planning that each frame needs.
-    let least = seconds_of(next, LEAST)?;
-    let most = (LEAST / least).clamp(LEAST, MEASURED).min(whole);
+    let base_seconds = seconds_of(next, MIN_SAMPLE_PIXELS)?;
+    let sample_pixels = (MIN_SAMPLE_PIXELS / base_seconds)
+        .clamp(MIN_SAMPLE_PIXELS, MAX_SAMPLE_PIXELS)
+        .min(pixel_count);
     // One short measurement may be slow by chance, so it is repeated where that is cheap.
-    let again = (least < SHORT).then(|| seconds_of(first, most)).flatten();
-    let seconds = seconds_of(next, most)?;
-    let seconds = again.map_or(seconds, |again| again.min(seconds));
-    let scale = (whole / most).max(1.0);
-    Some(least + (seconds - least).max(0.0) * scale)
+    let repeated = (base_seconds < REPEAT_BELOW_SECONDS)
+        .then(|| seconds_of(first, sample_pixels))
+        .flatten();
+    let seconds = seconds_of(next, sample_pixels)?;
+    let seconds = repeated.map_or(seconds, |repeated| repeated.min(seconds));
+    let scale = (pixel_count / sample_pixels).max(1.0);
+    Some(base_seconds + (seconds - base_seconds).max(0.0) * scale)
 }
 
 fn missing(sequence: &Sequence) -> Result<Missing, String> {
@@ -284,10 +293,10 @@ fn missing(sequence: &Sequence) -> Result<Missing, String> {
         });
     }
     let missing = sequence.missing().map_err(|error| error.to_string())?;
-    let is_there = |frame: &u64| sequence.path(*frame).exists();
+    let exists = |frame: &u64| sequence.path(*frame).exists();
     Ok(Missing {
         count: missing.count(),
-        replaced: missing.iter().filter(is_there).count(),
+        replaced: missing.iter().filter(exists).count(),
         ..Missing::default()
     })
 }

@@ -8,7 +8,7 @@ use super::fields::Settings;
 use crate::editor::Editor;
 
 /// Maximum number of documents whose settings are kept from one run to the next.
-const MOST_KEPT: usize = 32;
+const MAX_KEPT_DOCUMENTS: usize = 32;
 
 /// The document that export settings belong to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ impl KeptSettings {
     /// Stores the settings for the next export of their document.
     pub fn keep(&mut self, owner: SettingsOwner, settings: Settings) {
         // The next run may start in another working directory.
-        let settings = settings.at_home();
+        let settings = settings.with_absolute_folder();
         self.0.retain(|(other, _)| *other != owner);
         self.0.push((owner, settings));
     }
@@ -51,7 +51,7 @@ impl KeptSettings {
         let is_named =
             |(owner, _): &&(SettingsOwner, Settings)| matches!(owner, SettingsOwner::File(_));
         let named = self.0.iter().filter(is_named);
-        let skipped = named.clone().count().saturating_sub(MOST_KEPT);
+        let skipped = named.clone().count().saturating_sub(MAX_KEPT_DOCUMENTS);
         Self(named.skip(skipped).cloned().collect())
     }
 }
@@ -74,7 +74,7 @@ mod tests {
             let text = ron::to_string(&kept).expect("a text");
             assert!(text.contains(&format!("video:\"{word}\"")), "{text}");
             let kept: KeptSettings = ron::from_str(&text).expect("the same");
-            assert_eq!(kept.of(&owner), Some(&settings.at_home()));
+            assert_eq!(kept.of(&owner), Some(&settings.with_absolute_folder()));
         }
     }
 }

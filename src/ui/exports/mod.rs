@@ -25,7 +25,7 @@ use self::fields::{Settings, fields, presets};
 use self::forecast::Forecast;
 pub use self::kept::KeptSettings;
 use self::kept::SettingsOwner;
-use self::order::{EXPORT, ExportOrder, UNKEPT};
+use self::order::{EXPORT_TOPIC, ExportOrder, UNSTORED_TOPIC};
 use self::progress::seconds_left;
 use super::interchange::check_whole;
 use super::pictures::Pictures;
@@ -39,12 +39,12 @@ use crate::ui::hint::Hinted as _;
 use crate::ui::prompts::primary;
 
 /// Space left free below the list of exports, in points.
-const MARGIN: f32 = 2.0 * GRID;
+const LIST_MARGIN: f32 = 2.0 * GRID;
 /// Minimum height of the list, in points.
-const LEAST_LIST: f32 = 120.0;
+const MIN_LIST_HEIGHT: f32 = 120.0;
 
 /// The settings shown in the open window.
-struct Shown {
+struct ShownSettings {
     /// See [`Editor::documents`].
     document: u64,
     /// The revision of the scene that the settings were last matched to.
@@ -59,15 +59,15 @@ pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
     /// Rectangle of the window on the screen while it is shown.
-    place: Option<Rect>,
+    window_rect: Option<Rect>,
     /// The program's data folder, if there is one.
     folder: Option<PathBuf>,
     /// The current settings while the window is open.
-    shown: Option<Shown>,
+    shown: Option<ShownSettings>,
     kept: KeptSettings,
     /// The document shown when the window was last closed, and its settings. Kept apart from `kept` because the
     /// document may since have been saved under another name.
-    last: Option<(u64, Settings)>,
+    last_closed: Option<(u64, Settings)>,
     /// The listed exports.
     entries: Vec<Entry>,
     /// Exports that ended without being finished.
@@ -84,11 +84,13 @@ impl Exports {
     /// Starts with the settings kept by the previous run, and lists the unfinished exports that ended programs left
     /// in the data folder.
     pub fn new(folder: Option<PathBuf>, kept: KeptSettings, editor: &mut Editor) -> Self {
-        let interrupted = folder.as_deref().map_or(Vec::new(), ExportOrder::left_in);
+        let interrupted = folder
+            .as_deref()
+            .map_or(Vec::new(), ExportOrder::unfinished_in);
         // Exports that failed have already reported it.
-        let news = || interrupted.iter().filter(|order| order.why.is_none());
-        if let Some(order) = news().next() {
-            let more = match news().count() {
+        let unreported = || interrupted.iter().filter(|order| order.failure.is_none());
+        if let Some(order) = unreported().next() {
+            let more = match unreported().count() {
                 1 => String::new(),
                 more => format!(" and {} more", more - 1),
             };
@@ -116,7 +118,7 @@ impl Exports {
 
     /// Sets the folder that the user chose in the dialog.
     pub fn choose_folder(&mut self, folder: &Path) {
-        if let Some(Shown { settings, .. }) = &mut self.shown {
+        if let Some(ShownSettings { settings, .. }) = &mut self.shown {
             settings.folder = folder.display().to_string();
         }
     }
@@ -127,15 +129,15 @@ impl Exports {
         for entry in &mut self.entries {
             let state = states.iter().find(|state| state.id == entry.id);
             let was_over = entry.is_over();
-            if let Some(left) = entry.update(state, editor) {
+            if let Some(failed_order) = entry.update(state, editor) {
                 // It is listed as interrupted, from where it can be resumed.
                 pictures.worker().forget_export(entry.id);
-                self.interrupted.push(left);
+                self.interrupted.push(failed_order);
             }
             self.ended += usize::from(entry.is_over() && !was_over);
         }
         if self.ended > ended && self.entries.iter().all(Entry::is_over) {
-            editor.begin(UNKEPT);
+            editor.begin(UNSTORED_TOPIC);
         }
         let is_listed = |entry: &Entry| states.iter().any(|state| state.id == entry.id);
         self.entries
@@ -145,28 +147,31 @@ impl Exports {
     /// Describes the running export in words; `None` if there is none.
     pub fn describe(&self, pictures: &Pictures) -> Option<String> {
         let states = pictures.worker().exports();
-        let going = || states.iter().filter(|state| state.ended.is_none());
+        let running = || states.iter().filter(|state| state.ended.is_none());
         // Prefer an export that is not paused.
-        let at_work = going().find(|state| !state.is_paused);
-        let Some(state) = at_work.or_else(|| going().next()) else {
-            return self.entries.iter().find_map(Entry::describe_rest);
+        let active = running().find(|state| !state.is_paused);
+        let Some(state) = active.or_else(|| running().next()) else {
+            return self.entries.iter().find_map(Entry::describe_after_frames);
         };
         let done = state.done.so_far();
-        let left = match seconds_left(state) {
+        let time_left = match seconds_left(state) {
             Some(seconds) => format!(" · {} left", time_in_words(seconds)),
             None if state.is_paused => " · paused".to_owned(),
             None => String::new(),
         };
-        let more = match going().count() - 1 {
+        let more = match running().count() - 1 {
             0 => String::new(),
             more => format!(" · {more} more"),
         };
-        Some(format!("export {done}/{}{left}{more}", state.done.total))
+        Some(format!(
+            "export {done}/{}{time_left}{more}",
+            state.done.total
+        ))
     }
 
     /// The rectangle of the window on the screen, if it is shown.
     pub fn place(&self) -> Option<Rect> {
-        self.place
+        self.window_rect
     }
 
     /// Returns whether any export or estimate is still in progress.
@@ -189,8 +194,8 @@ impl Exports {
             let mut states = states.iter();
             states.any(|state| state.id == entry.id && state.is_paused && state.ended.is_none())
         };
-        let mut going = self.entries.iter().filter(|entry| !entry.is_over());
-        if self.forecast.is_busy() || going.any(|entry| !is_paused(entry)) {
+        let mut running = self.entries.iter().filter(|entry| !entry.is_over());
+        if self.forecast.is_busy() || running.any(|entry| !is_paused(entry)) {
             ctx.request_repaint_after(Duration::from_millis(100));
         }
         let mut is_open = self.is_open;
@@ -201,24 +206,24 @@ impl Exports {
             .default_pos(egui::pos2(280.0, 60.0))
             .show(ctx, |ui| {
                 self.show_settings(ui, editor, pictures, out);
-                let room = ctx.content_rect().bottom() - ui.cursor().top() - MARGIN;
-                let room = room.max(LEAST_LIST);
-                let list = ScrollArea::vertical().max_height(room);
+                let list_height = ctx.content_rect().bottom() - ui.cursor().top() - LIST_MARGIN;
+                let list_height = list_height.max(MIN_LIST_HEIGHT);
+                let list = ScrollArea::vertical().max_height(list_height);
                 // Otherwise the auto-sized window would give the list less height.
-                let list = list.min_scrolled_height(room);
+                let list = list.min_scrolled_height(list_height);
                 list.show(ui, |ui| {
                     self.show_list(ui, editor, pictures);
                     self.show_interrupted(ui, editor, pictures);
                 });
             });
-        self.place = shown.map(|shown| shown.response.rect);
+        self.window_rect = shown.map(|shown| shown.response.rect);
         self.is_open = is_open && self.is_open;
         if !self.is_open
             && let Some(shown) = self.shown.take()
         {
             // The results of the estimate are no longer needed.
             (self.forecast, self.sequence) = (Forecast::default(), None);
-            self.last = Some((shown.document, shown.settings.clone()));
+            self.last_closed = Some((shown.document, shown.settings.clone()));
             self.kept.keep(shown.owner, shown.settings);
         }
     }
@@ -226,10 +231,10 @@ impl Exports {
     /// Returns the stored settings of the open document, matched to the scene as it is now.
     fn settings(&self, editor: &Editor) -> Settings {
         let (fresh, owner) = (Settings::of(editor), SettingsOwner::of(editor));
-        let last = self.last.as_ref();
-        let last = last.filter(|(document, _)| *document == editor.documents());
+        let last_closed = self.last_closed.as_ref();
+        let last_closed = last_closed.filter(|(document, _)| *document == editor.documents());
         let kept = self.kept.of(&owner);
-        match kept.or(last.map(|(_, settings)| settings)) {
+        match kept.or(last_closed.map(|(_, settings)| settings)) {
             Some(kept) => kept.for_scene(fresh),
             None => fresh,
         }
@@ -262,35 +267,35 @@ impl Exports {
             .spacing([GRID, GRID / 2.0])
             .show(ui, |ui| fields(ui, &mut settings, out));
         let sequence = self.sequence(&settings, editor.scene());
-        let is_making = sequence
+        let is_being_written = sequence
             .as_ref()
-            .is_ok_and(|sequence| self.is_making(&settings, sequence));
+            .is_ok_and(|sequence| self.is_being_written(&settings, sequence));
         let colors = palette(ui.ctx());
         self.forecast.update();
         match &sequence {
             Err(error) => {
                 ui.colored_label(colors.error, error);
             }
-            Ok(_) if is_making => {
-                ui.label("These files are being made, see below");
+            Ok(_) if is_being_written => {
+                ui.label("These files are being written, see below");
             }
             Ok(sequence) => {
                 let forecast = &mut self.forecast;
-                forecast.look((&settings, sequence), editor, self.ended);
+                forecast.examine_folder((&settings, sequence), editor, self.ended);
                 forecast.measure((&settings, sequence), editor, pictures);
                 ui.label(forecast.describe(&settings, sequence));
             }
         }
-        let can_start = sequence.is_ok() && !is_making;
+        let can_start = sequence.is_ok() && !is_being_written;
         let start = ui.add_enabled_ui(can_start, |ui| primary(ui, "Export"));
         let start = start.inner;
         if start.accessible_name("Start export").clicked()
             && let Ok(sequence) = sequence
         {
             let order = ExportOrder::new(settings.clone(), editor, self.folder.as_deref());
-            self.begin(order, sequence, editor, pictures);
+            self.queue(order, sequence, editor, pictures);
         }
-        self.shown = Some(Shown {
+        self.shown = Some(ShownSettings {
             document,
             revision,
             owner: SettingsOwner::of(editor),
@@ -301,9 +306,9 @@ impl Exports {
     /// Returns the frame sequence of the settings. It is cached, as making it anew in every UI frame is slow for
     /// large scenes.
     fn sequence(&mut self, settings: &Settings, scene: &Arc<Scene>) -> Result<Sequence, String> {
-        let known = self.sequence.take();
-        let known = known.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
-        let (.., sequence) = self.sequence.insert(known.unwrap_or_else(|| {
+        let cached = self.sequence.take();
+        let cached = cached.filter(|(of, from, _)| of == settings && Arc::ptr_eq(from, scene));
+        let (.., sequence) = self.sequence.insert(cached.unwrap_or_else(|| {
             let made = check_whole(scene)
                 .and_then(|()| settings.sequence(scene).map_err(|error| error.to_string()));
             (settings.clone(), Arc::clone(scene), made)
@@ -312,14 +317,14 @@ impl Exports {
     }
 
     /// Returns whether a listed export writes the same files: the two would overwrite each other's.
-    fn is_making(&self, settings: &Settings, sequence: &Sequence) -> bool {
+    fn is_being_written(&self, settings: &Settings, sequence: &Sequence) -> bool {
         let video = settings.video(sequence).map(|(path, _)| path);
         let mut entries = self.entries.iter();
-        entries.any(|entry| entry.is_in_the_way_of(sequence, video.as_deref()))
+        entries.any(|entry| entry.conflicts_with(sequence, video.as_deref()))
     }
 
     /// Queues an export.
-    fn begin(
+    fn queue(
         &mut self,
         order: ExportOrder,
         sequence: Sequence,
@@ -327,7 +332,7 @@ impl Exports {
         pictures: &Pictures,
     ) {
         self.forecast.forget_folder();
-        editor.begin(EXPORT);
+        editor.begin(EXPORT_TOPIC);
         match pictures.worker().export(sequence.clone()) {
             Ok(id) => {
                 let replaced = self.entries.iter();
@@ -339,9 +344,9 @@ impl Exports {
             }
             Err(error) => {
                 // Listed as interrupted, as a missing folder may reappear later.
-                let why = error.to_string();
-                editor.report_error_in(EXPORT, why.clone());
-                self.interrupted.push(order.failed(why));
+                let failure = error.to_string();
+                editor.report_error_in(EXPORT_TOPIC, failure.clone());
+                self.interrupted.push(order.failed(failure));
             }
         }
     }
@@ -363,14 +368,14 @@ impl Exports {
         for (index, order) in self.interrupted.iter().enumerate() {
             ui.separator();
             ui.label(&order.name).hint(&order.settings.folder);
-            match &order.why {
-                Some(why) => ui.colored_label(palette(ui.ctx()).error, why),
+            match &order.failure {
+                Some(failure) => ui.colored_label(palette(ui.ctx()).error, failure),
                 None => ui.weak("Not finished"),
             };
             ui.horizontal(|ui| {
                 let resume = ui
                     .button("Resume")
-                    .hint("With the scene as it was then; what is done stays");
+                    .hint("Uses the scene as it was then; finished frames are kept");
                 if resume.clicked() {
                     resumed = Some(index);
                 }
@@ -382,21 +387,21 @@ impl Exports {
         if let Some(index) = resumed {
             let order = self.interrupted.remove(index);
             match order.sequence() {
-                Ok(sequence) if self.is_making(&order.settings, &sequence) => {
-                    editor.notify("Another export makes such files: wait for it".to_owned());
+                Ok(sequence) if self.is_being_written(&order.settings, &sequence) => {
+                    editor.notify("Another export is writing these files: wait for it".to_owned());
                     self.interrupted.push(order);
                 }
-                Ok(sequence) => self.begin(order, sequence, editor, pictures),
+                Ok(sequence) => self.queue(order, sequence, editor, pictures),
                 Err(error) => {
-                    editor.report_error_in(EXPORT, format!("{}: {error}", order.name));
+                    editor.report_error_in(EXPORT_TOPIC, format!("{}: {error}", order.name));
                     self.interrupted.insert(index, order);
                 }
             }
         } else if let Some(index) = removed {
             self.interrupted.remove(index).end();
-            if self.interrupted.iter().all(|order| order.why.is_none()) {
+            if self.interrupted.iter().all(|order| order.failure.is_none()) {
                 // No failed export is left: clear the error messages.
-                editor.begin(EXPORT);
+                editor.begin(EXPORT_TOPIC);
             }
         }
     }

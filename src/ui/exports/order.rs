@@ -10,12 +10,12 @@ use crate::scene::{Document, Leftover, Recovery, Scene};
 use crate::worker::Background;
 
 /// Topic of messages about exports.
-pub const EXPORT: &str = "export";
+pub const EXPORT_TOPIC: &str = "export";
 /// Topic of messages about orders that could not be written to disk, so that these exports cannot be resumed.
-pub const UNKEPT: &str = "Exports that are not kept";
+pub const UNSTORED_TOPIC: &str = "Exports that are not kept";
 
 /// Prefix of the first line of a stored scene; the export settings follow it as JSON.
-const MARK: &str = "// export: ";
+const SETTINGS_PREFIX: &str = "// export: ";
 /// Subfolder of the data folder for these files.
 const FOLDER: &str = "exports";
 
@@ -26,11 +26,11 @@ pub struct ExportOrder {
     /// The export settings.
     pub settings: Settings,
     /// Why it ended unfinished, if it did so while the program was running.
-    pub why: Option<String>,
+    pub failure: Option<String>,
     /// The scene at the time of the order.
     pub scene: Arc<Scene>,
     /// The file it is kept in; `None` if the system offers no place.
-    place: Option<Arc<Recovery>>,
+    recovery: Option<Arc<Recovery>>,
     /// The write to disk in progress; its error is a message.
     writing: Background<Result<(), String>>,
 }
@@ -39,27 +39,29 @@ impl ExportOrder {
     /// Creates an order for the editor's scene, kept in the program's data folder.
     pub fn new(settings: Settings, editor: &Editor, folder: Option<&Path>) -> Self {
         // The next run may start in another working directory.
-        let settings = settings.at_home();
-        let place = folder.map(|folder| Recovery::new(&folder.join(FOLDER)));
-        let place = place.map(|place| place.map(Arc::new).map_err(|error| error.to_string()));
+        let settings = settings.with_absolute_folder();
+        let recovery = folder.map(|folder| Recovery::new(&folder.join(FOLDER)));
+        let recovery =
+            recovery.map(|recovery| recovery.map(Arc::new).map_err(|error| error.to_string()));
         // Mesh triangles are stored inline: the mesh files may have changed when the export is resumed.
         let document = Document::of(editor.scene().inlined());
         let path = editor.path().map(Path::to_owned);
-        let writing = place.clone().map(|place| {
+        let writing = recovery.clone().map(|recovery| {
             let settings = settings.clone();
             Background::start("glint-order", move || {
-                let place = place?;
-                let text = text_of(&settings, document).ok_or("it has no text")?;
-                let kept = place.keep(&text, path.as_deref(), None);
+                let recovery = recovery?;
+                let text =
+                    text_of(&settings, document).ok_or("the scene cannot be written as text")?;
+                let kept = recovery.keep(&text, path.as_deref(), None);
                 kept.map_err(|error| error.to_string())
             })
         });
         Self {
             name: settings.describe(&editor.title()),
             settings,
-            why: None,
+            failure: None,
             scene: Arc::clone(editor.scene()),
-            place: place.and_then(Result::ok),
+            recovery: recovery.and_then(Result::ok),
             writing: writing.unwrap_or_default(),
         }
     }
@@ -73,40 +75,40 @@ impl ExportOrder {
     }
 
     /// Returns the unfinished orders of ended programs.
-    pub fn left_in(folder: &Path) -> Vec<Self> {
+    pub fn unfinished_in(folder: &Path) -> Vec<Self> {
         let folder = folder.join(FOLDER);
-        let (mut found, mut unread) = (Vec::new(), Vec::new());
+        let (mut found, mut unreadable) = (Vec::new(), Vec::new());
         while folder.is_dir()
-            && let Ok(place) = Recovery::new(&folder)
-            && let Some(leftover) = place.take_leftover(None)
+            && let Ok(recovery) = Recovery::new(&folder)
+            && let Some(leftover) = recovery.take_leftover(None)
         {
-            match Self::read(leftover, place) {
+            match Self::read(leftover, recovery) {
                 Ok(order) => found.push(order),
                 // Possibly written by another version. Its lock is held until all files are seen, so that it is not
                 // found again.
-                Err(place) => unread.push(place),
+                Err(recovery) => unreadable.push(recovery),
             }
         }
         found
     }
 
-    /// Reads a leftover order; returns its place as the error if it is not an order.
-    fn read(leftover: Leftover, place: Recovery) -> Result<Self, Recovery> {
+    /// Reads a leftover order; returns its recovery file as the error if it is not an order.
+    fn read(leftover: Leftover, recovery: Recovery) -> Result<Self, Recovery> {
         let Leftover { document, path, .. } = leftover;
         let line = document.header.lines().next();
-        let line = line.and_then(|line| line.strip_prefix(MARK));
+        let line = line.and_then(|line| line.strip_prefix(SETTINGS_PREFIX));
         let settings = line.and_then(|line| serde_json::from_str::<Settings>(line).ok());
         let Some(settings) = settings else {
-            return Err(place);
+            return Err(recovery);
         };
         let title = path.as_deref().and_then(Path::file_name);
         let title = title.map_or("a new scene".into(), |title| title.to_string_lossy());
         Ok(Self {
             name: settings.describe(&title),
             settings,
-            why: None,
+            failure: None,
             scene: Arc::new(document.scene),
-            place: Some(Arc::new(place)),
+            recovery: Some(Arc::new(recovery)),
             writing: Background::default(),
         })
     }
@@ -120,9 +122,9 @@ impl ExportOrder {
     }
 
     /// The same order with the reason why it is unfinished.
-    pub fn failed(self, why: String) -> Self {
+    pub fn failed(self, failure: String) -> Self {
         Self {
-            why: Some(why),
+            failure: Some(failure),
             ..self
         }
     }
@@ -131,15 +133,15 @@ impl ExportOrder {
     pub fn end(self) {
         // A write still in progress would put the file back.
         self.writing.finish();
-        if let Some(place) = self.place {
-            place.clear();
+        if let Some(recovery) = self.recovery {
+            recovery.clear();
         }
     }
 }
 
 fn text_of(settings: &Settings, mut document: Document) -> Option<String> {
     let settings = serde_json::to_string(settings).ok()?;
-    document.header = format!("{MARK}{settings}\n");
+    document.header = format!("{SETTINGS_PREFIX}{settings}\n");
     document.to_text().ok()
 }
 
@@ -154,12 +156,12 @@ mod tests {
     fn what_another_version_wrote_stays() {
         let folder = tempfile::tempdir().expect("a folder");
         let orders = folder.path().join(FOLDER);
-        let place = Recovery::new(&orders).expect("a place");
-        let text = format!("{MARK}{{\"of\": \"a later version\"}}\n{DEMO_TEXT}");
-        place.keep(&text, None, None).expect("kept");
-        drop(place);
+        let recovery = Recovery::new(&orders).expect("a place");
+        let text = format!("{SETTINGS_PREFIX}{{\"of\": \"a later version\"}}\n{DEMO_TEXT}");
+        recovery.keep(&text, None, None).expect("kept");
+        drop(recovery);
         for _ in 0..2 {
-            assert!(ExportOrder::left_in(folder.path()).is_empty());
+            assert!(ExportOrder::unfinished_in(folder.path()).is_empty());
             let files = std::fs::read_dir(&orders).expect("there");
             let names = files.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
             let kept: Vec<String> = names.filter(|name| name.contains(".ron")).collect();
@@ -193,13 +195,13 @@ mod tests {
         let written = order.writing.take_within(Duration::from_mins(1));
         assert_eq!(written, Some(Ok(Ok(()))));
         assert!(
-            ExportOrder::left_in(folder.path()).is_empty(),
+            ExportOrder::unfinished_in(folder.path()).is_empty(),
             "its program still runs"
         );
         drop(order);
         // Found twice: an order that is dropped without being ended stays on disk.
         for _ in 0..2 {
-            let found = ExportOrder::left_in(folder.path());
+            let found = ExportOrder::unfinished_in(folder.path());
             let [order] = &found[..] else {
                 panic!("{} orders", found.len());
             };
@@ -211,9 +213,9 @@ mod tests {
                 name.split_once(" · ").map(|(_, rest)| rest)
             );
         }
-        ExportOrder::left_in(folder.path())
+        ExportOrder::unfinished_in(folder.path())
             .into_iter()
             .for_each(ExportOrder::end);
-        assert!(ExportOrder::left_in(folder.path()).is_empty());
+        assert!(ExportOrder::unfinished_in(folder.path()).is_empty());
     }
 }

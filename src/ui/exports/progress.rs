@@ -28,7 +28,7 @@ fn progress(state: &ExportState, video: Option<&VideoMaker>) -> (f64, String) {
     let text = match (&state.ended, video) {
         (Some(Ok(())), Some(video)) => return video_progress(video),
         (Some(Ok(())), None) if state.done.written == 0 => {
-            format!("{}, all there already", counted(done, "frame"))
+            format!("{}, all already there", counted(done, "frame"))
         }
         (Some(Ok(())), None) => format!("{}, {busy:.1} s", counted(done, "frame")),
         (Some(Err(_)), _) => format!("{done} of {total}, failed"),
@@ -58,10 +58,7 @@ fn video_progress(video: &VideoMaker) -> (f64, String) {
             (share, format!("{name}: {done} of {total}{left}"))
         }
         VideoState::Made => (1.0, format!("{} and {name}", counted(total, "frame"))),
-        VideoState::Stopped => (
-            1.0,
-            format!("{}, the video given up", counted(total, "frame")),
-        ),
+        VideoState::Stopped => (1.0, format!("{}, video cancelled", counted(total, "frame"))),
         VideoState::Failed(_) => (1.0, format!("{}, but no video", counted(total, "frame"))),
     }
 }
@@ -75,8 +72,8 @@ pub fn show_state(
     video: Option<&VideoMaker>,
     pictures: &Pictures,
 ) -> bool {
-    let place = video.map_or(&state.folder, |video| &video.path);
-    ui.label(name).hint(place.display().to_string());
+    let output_path = video.map_or(&state.folder, |video| &video.path);
+    ui.label(name).hint(output_path.display().to_string());
     let row = ui.horizontal(|ui| {
         let (share, text) = progress(state, video);
         let has_frames = matches!(state.ended, Some(Ok(())));
@@ -87,13 +84,13 @@ pub fn show_state(
         };
         let making = video.filter(is_making);
         let is_over = state.ended.is_some() && making.is_none();
-        let buttons = if is_over { 150.0 } else { 120.0 };
-        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons);
+        let buttons_width = if is_over { 150.0 } else { 120.0 };
+        let bar = ProgressBar::new(share as f32).desired_width(FIELDS - buttons_width);
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if let Some(video) = making {
             // Same layout as while the frames were made, so that a click meant for one button does not hit another.
             ui.add_enabled(false, Button::new("Pause"));
-            if ui.button("Cancel").hint("Its frames stay").clicked() {
+            if ui.button("Cancel").hint("Its frames are kept").clicked() {
                 video.stop();
             }
             return false;
@@ -110,7 +107,7 @@ pub fn show_state(
         }
         let cancel = ui
             .button("Cancel")
-            .hint("What is written stays; exporting again goes on from there");
+            .hint("Finished frames are kept; exporting again continues from there");
         if cancel.clicked() {
             pictures.worker().forget_export(state.id);
         }

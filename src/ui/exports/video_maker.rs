@@ -37,13 +37,13 @@ pub struct VideoMaker {
     pub state: VideoState,
     sequence: Sequence,
     video: Video,
-    making: Background<Result<(), VideoError>>,
+    encoding: Background<Result<(), VideoError>>,
     /// When encoding began, and how long it had taken when `done` last grew.
-    since: Option<(Instant, Duration)>,
+    timing: Option<(Instant, Duration)>,
     /// Number of frames encoded so far.
     done: Arc<AtomicUsize>,
     /// Whether the user has cancelled it.
-    is_stopped: Arc<AtomicBool>,
+    is_cancelled: Arc<AtomicBool>,
 }
 
 impl VideoMaker {
@@ -54,10 +54,10 @@ impl VideoMaker {
             state: VideoState::Waiting,
             sequence,
             video,
-            making: Background::default(),
-            since: None,
+            encoding: Background::default(),
+            timing: None,
             done: Arc::default(),
-            is_stopped: Arc::default(),
+            is_cancelled: Arc::default(),
         }
     }
 
@@ -68,7 +68,7 @@ impl VideoMaker {
 
     /// Estimated seconds left, extrapolated from the frames encoded so far.
     pub fn seconds_left(&self) -> Option<f64> {
-        let (VideoState::Making(done @ 1..), Some((_, taken))) = (&self.state, self.since) else {
+        let (VideoState::Making(done @ 1..), Some((_, taken))) = (&self.state, self.timing) else {
             return None;
         };
         let left = self.frames().saturating_sub(*done);
@@ -78,38 +78,38 @@ impl VideoMaker {
     /// Starts encoding in the background, on separate threads.
     pub fn make(&mut self) {
         let (kind, sequence, path) = (self.video, self.sequence.clone(), self.path.clone());
-        let (done, is_stopped) = (Arc::clone(&self.done), Arc::clone(&self.is_stopped));
-        let go_on = move |frames| {
+        let (done, is_cancelled) = (Arc::clone(&self.done), Arc::clone(&self.is_cancelled));
+        let on_progress = move |frames| {
             done.store(frames, Ordering::Relaxed);
-            !is_stopped.load(Ordering::Relaxed)
+            !is_cancelled.load(Ordering::Relaxed)
         };
         let make = move || {
             let threads = Threads::new(Some(video_threads()))?;
-            threads.run(|| kind.make(&sequence, &path, go_on))
+            threads.run(|| kind.make(&sequence, &path, on_progress))
         };
-        self.since = Some((Instant::now(), Duration::ZERO));
-        self.making = Background::start("glint-video", make);
+        self.timing = Some((Instant::now(), Duration::ZERO));
+        self.encoding = Background::start("glint-video", make);
         self.state = VideoState::Making(0);
     }
 
     /// Asks the encoder to stop, which may take a moment.
     pub fn stop(&self) {
-        self.is_stopped.store(true, Ordering::Relaxed);
+        self.is_cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Updates the progress from the background task.
     pub fn update(&mut self) -> &VideoState {
-        match self.making.take() {
+        match self.encoding.take() {
             Some(Ok(Ok(()))) => self.state = VideoState::Made,
             Some(Ok(Err(VideoError::Stopped))) => self.state = VideoState::Stopped,
             Some(Ok(Err(error))) => self.state = VideoState::Failed(error.to_string()),
             Some(Err(no_answer)) => {
                 self.state = VideoState::Failed(format!("No video: {no_answer}"));
             }
-            None if self.making.is_awaited() => {
+            None if self.encoding.is_awaited() => {
                 let state = VideoState::Making(self.done.load(Ordering::Relaxed));
                 // The count grows by several frames at once, so the time is taken only when it changes.
-                if let Some((since, taken)) = self.since.as_mut().filter(|_| state != self.state) {
+                if let Some((since, taken)) = self.timing.as_mut().filter(|_| state != self.state) {
                     *taken = since.elapsed();
                 }
                 self.state = state;

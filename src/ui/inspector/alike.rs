@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::items::{BOTH, COLOR_PACK};
+use super::items::{BOTH_COLORS, COLOR_PACK};
 use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
 use crate::ui::rows::{EditedPart, is_channel};
@@ -50,29 +50,29 @@ fn move_all(
     (edit, point): (Edit, &MovedPoint),
     is_together: bool,
 ) -> Edit {
-    let to = |place: DVec3| {
+    let moved = |position: DVec3| {
         if is_together {
-            place + (point.to - point.from)
+            position + (point.to - point.from)
         } else {
-            changed(place, point.from, point.to)
+            with_changed_coordinates(position, point.from, point.to)
         }
     };
     // If the point is one of several corners, its item is moved as a whole, too.
-    let (others, own) = match selected.split_last() {
-        Some((_, others)) if point.is_only => (others, Some(edit)),
+    let (moved_items, last_edit) = match selected.split_last() {
+        Some((_, moved_items)) if point.is_only => (moved_items, Some(edit)),
         _ => (selected, None),
     };
-    let edits = others.iter().filter_map(|item| {
+    let edits = moved_items.iter().filter_map(|item| {
         let object = |object: &mut Object| {
             // Typed coordinates are those of a single point, which shapes with several points do not have.
             if is_together || object.shape.points().len() == 1 {
-                object.shape = object.shape.placed(to(object.shape.position()));
+                object.shape = object.shape.placed(moved(object.shape.position()));
             }
         };
-        let light = |light: &mut Light| light.position = to(light.position);
+        let light = |light: &mut Light| light.position = moved(light.position);
         Edit::of_item(scene, *item, "position", (object, light))
     });
-    let edits = edits.chain(own).collect();
+    let edits = edits.chain(last_edit).collect();
     Edit::Each(edits, format!("Move {} items", selected.len()))
 }
 
@@ -90,7 +90,7 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
             };
             let edits = selected
                 .iter()
-                .filter_map(|item| like_object(scene, *item, (old, &new), field));
+                .filter_map(|item| object_change_on(scene, *item, (old, &new), field));
             (edits.collect(), field)
         }
         Edit::Light(index, new, field) => {
@@ -99,7 +99,7 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
             };
             let edits = selected
                 .iter()
-                .filter_map(|item| like_light(scene, *item, (old, &new), field));
+                .filter_map(|item| light_change_on(scene, *item, (old, &new), field));
             (edits.collect(), field)
         }
         Edit::Pack(index, new, field) => {
@@ -107,8 +107,8 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
                 return Edit::Pack(index, new, field);
             };
             let edits = packs_of(scene, selected).filter_map(|index| {
-                let (_, own) = scene.color_packs.get_index(index)?;
-                let pack = like_pack(own, (old, &new), field);
+                let (_, current) = scene.color_packs.get_index(index)?;
+                let pack = with_pack_changes(current, (old, &new), field);
                 Some(Edit::Pack(index, pack, field))
             });
             (edits.collect(), field)
@@ -130,9 +130,9 @@ pub fn chosen_for_all(
     (edit, EditedPart { field, part }): (Edit, EditedPart),
 ) -> Edit {
     // As if the last item had no value there, so that it counts as changed as well.
-    let nothing = |own: &mut DVec3| match part {
-        Some(part) => own[part] = f64::NAN,
-        None => *own = DVec3::NAN,
+    let clear = |vector: &mut DVec3| match part {
+        Some(part) => vector[part] = f64::NAN,
+        None => *vector = DVec3::NAN,
     };
     let mut scene = scene.clone();
     match &edit {
@@ -141,20 +141,20 @@ pub fn chosen_for_all(
             if field == COLOR_PACK {
                 object.color_pack.clear();
             }
-            object.shape.fields(&mut |own| match own.value {
-                _ if own.name != field => {}
-                PropertyValue::Point(own)
-                | PropertyValue::Direction(own)
-                | PropertyValue::Angles(own)
-                | PropertyValue::Factors(own) => nothing(own),
-                PropertyValue::Length(own) | PropertyValue::Angle(own) => *own = f64::NAN,
+            object.shape.fields(&mut |property| match property.value {
+                _ if property.name != field => {}
+                PropertyValue::Point(value)
+                | PropertyValue::Direction(value)
+                | PropertyValue::Angles(value)
+                | PropertyValue::Factors(value) => clear(value),
+                PropertyValue::Length(value) | PropertyValue::Angle(value) => *value = f64::NAN,
             });
             scene.objects[*index] = object;
         }
         Edit::Light(index, ..) => {
             let light = &mut scene.lights[*index];
             match (field, &mut light.marker) {
-                ("position", _) => nothing(&mut light.position),
+                ("position", _) => clear(&mut light.position),
                 ("intensity", _) => light.intensity = f64::NAN,
                 ("radius", Some(marker)) => marker.radius = f64::NAN,
                 (COLOR_PACK, Some(marker)) => marker.color_pack.clear(),
@@ -165,11 +165,11 @@ pub fn chosen_for_all(
             if let Some((_, pack)) = scene.packs_mut().get_index_mut(*index) {
                 let name = field.split(' ').next();
                 match name.unwrap_or_default() {
-                    "ambient" => nothing(&mut pack.ambient),
-                    "specular" => nothing(&mut pack.specular),
+                    "ambient" => clear(&mut pack.ambient),
+                    "specular" => clear(&mut pack.specular),
                     "phong" => pack.phong_exponent = f64::NAN,
                     // The row that sets both shows the diffuse colour.
-                    name if name == "diffuse" || name == BOTH.0 => nothing(&mut pack.diffuse),
+                    name if name == "diffuse" || name == BOTH_COLORS.0 => clear(&mut pack.diffuse),
                     _ => {}
                 }
             }
@@ -181,95 +181,100 @@ pub fn chosen_for_all(
 
 /// The selected color packs and those of the selected objects, each once.
 pub fn packs_of(scene: &Scene, selected: &[Item]) -> impl Iterator<Item = usize> {
-    let others = selected.iter().filter(|item| item.kind != ItemKind::Light);
-    let packs = others.filter_map(|item| scene.color_packs.get_index_of(item.color_pack(scene)?));
+    let users = selected.iter().filter(|item| item.kind != ItemKind::Light);
+    let packs = users.filter_map(|item| scene.color_packs.get_index_of(item.color_pack(scene)?));
     packs.collect::<BTreeSet<_>>().into_iter()
 }
 
 /// A color pack with the changes from `old` to `new` applied: a whole colour, or one channel of it.
-fn like_pack(own: &ColorPack, (old, new): (&ColorPack, &ColorPack), field: &str) -> ColorPack {
-    let mut pack = own.clone();
+fn with_pack_changes(
+    current: &ColorPack,
+    (old, new): (&ColorPack, &ColorPack),
+    field: &str,
+) -> ColorPack {
+    let mut pack = current.clone();
     let is_channel = is_channel(field);
-    let take_color = |own: &mut DVec3, old: DVec3, new: DVec3| {
-        *own = match is_channel {
-            true => changed(*own, old, new),
+    let copy_color = |current: &mut DVec3, old: DVec3, new: DVec3| {
+        *current = match is_channel {
+            true => with_changed_coordinates(*current, old, new),
             false if old != new => new,
-            false => *own,
+            false => *current,
         };
     };
-    if field.starts_with(BOTH.0) {
+    if field.starts_with(BOTH_COLORS.0) {
         // Ambient follows diffuse whatever it was before, as when a single pack is changed.
-        take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
+        copy_color(&mut pack.diffuse, old.diffuse, new.diffuse);
         pack.ambient = pack.diffuse;
     } else {
-        take_color(&mut pack.ambient, old.ambient, new.ambient);
-        take_color(&mut pack.diffuse, old.diffuse, new.diffuse);
-        take_color(&mut pack.specular, old.specular, new.specular);
+        copy_color(&mut pack.ambient, old.ambient, new.ambient);
+        copy_color(&mut pack.diffuse, old.diffuse, new.diffuse);
+        copy_color(&mut pack.specular, old.specular, new.specular);
     }
-    take(
+    copy_if_changed(
         &mut pack.phong_exponent,
         &old.phong_exponent,
         &new.phong_exponent,
     );
-    take(&mut pack.reflective, &old.reflective, &new.reflective);
+    copy_if_changed(&mut pack.reflective, &old.reflective, &new.reflective);
     pack
 }
 
 /// Copies a property if it has changed.
-fn take<T: Clone + PartialEq>(own: &mut T, old: &T, new: &T) {
+fn copy_if_changed<T: Clone + PartialEq>(target: &mut T, old: &T, new: &T) {
     if old != new {
-        own.clone_from(new);
+        target.clone_from(new);
     }
 }
 
 /// The edit that applies the change of an object to another item.
-fn like_object(
+fn object_change_on(
     scene: &Scene,
     item: Item,
     (old, new): (&Object, &Object),
     field: &'static str,
 ) -> Option<Edit> {
     let to_object = |object: &mut Object| {
-        take(&mut object.color_pack, &old.color_pack, &new.color_pack);
-        take(&mut object.visible, &old.visible, &new.visible);
-        take_changes(&mut object.shape, &old.shape, &new.shape);
+        copy_if_changed(&mut object.color_pack, &old.color_pack, &new.color_pack);
+        copy_if_changed(&mut object.visible, &old.visible, &new.visible);
+        copy_shape_changes(&mut object.shape, &old.shape, &new.shape);
     };
     let to_light = |light: &mut Light| {
-        take(&mut light.visible, &old.visible, &new.visible);
+        copy_if_changed(&mut light.visible, &old.visible, &new.visible);
         if let Some(marker) = &mut light.marker {
-            take(&mut marker.color_pack, &old.color_pack, &new.color_pack);
+            copy_if_changed(&mut marker.color_pack, &old.color_pack, &new.color_pack);
         }
     };
     Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
 /// The edit that applies the change of a light to another item.
-fn like_light(
+fn light_change_on(
     scene: &Scene,
     item: Item,
     (old, new): (&Light, &Light),
     field: &'static str,
 ) -> Option<Edit> {
-    let to_object = |object: &mut Object| take(&mut object.visible, &old.visible, &new.visible);
+    let to_object =
+        |object: &mut Object| copy_if_changed(&mut object.visible, &old.visible, &new.visible);
     let to_light = |light: &mut Light| {
-        take(&mut light.intensity, &old.intensity, &new.intensity);
-        take(&mut light.visible, &old.visible, &new.visible);
+        copy_if_changed(&mut light.intensity, &old.intensity, &new.intensity);
+        copy_if_changed(&mut light.visible, &old.visible, &new.visible);
         match (&mut light.marker, &old.marker, &new.marker) {
-            (Some(own), Some(old), Some(new)) => {
-                take(&mut own.radius, &old.radius, &new.radius);
-                take(&mut own.color_pack, &old.color_pack, &new.color_pack);
+            (Some(marker), Some(old), Some(new)) => {
+                copy_if_changed(&mut marker.radius, &old.radius, &new.radius);
+                copy_if_changed(&mut marker.color_pack, &old.color_pack, &new.color_pack);
             }
-            (own @ None, None, Some(new)) => *own = Some(new.clone()),
-            (own, Some(_), None) => *own = None,
+            (marker @ None, None, Some(new)) => *marker = Some(new.clone()),
+            (marker, Some(_), None) => *marker = None,
             _ => {}
         }
     };
     Edit::of_item(scene, item, field, (to_object, to_light))
 }
 
-/// `own` with the coordinates that differ between `old` and `new` taken from `new`.
-fn changed(own: DVec3, old: DVec3, new: DVec3) -> DVec3 {
-    DVec3::select(new.cmpne(old), new, own)
+/// `current` with the coordinates that differ between `old` and `new` taken from `new`.
+fn with_changed_coordinates(current: DVec3, old: DVec3, new: DVec3) -> DVec3 {
+    DVec3::select(new.cmpne(old), new, current)
 }
 
 /// All properties of a shape with their names; a single number fills all three coordinates.
@@ -292,23 +297,23 @@ fn value_of(value: &PropertyValue) -> DVec3 {
 }
 
 /// Applies to a shape the changes from `old` to `new` of the properties that it has, too.
-fn take_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
+fn copy_shape_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
     let (old, new) = (values(old), values(new));
     shape.fields(&mut |field| {
-        let of = |values: &[(&str, DVec3)]| {
+        let find = |values: &[(&str, DVec3)]| {
             let mut named = values.iter().filter(|(name, _)| *name == field.name);
             named.next().map(|(_, value)| *value)
         };
-        let (Some(old), Some(new)) = (of(&old), of(&new)) else {
+        let (Some(old), Some(new)) = (find(&old), find(&new)) else {
             return;
         };
         match field.value {
-            PropertyValue::Point(own)
-            | PropertyValue::Direction(own)
-            | PropertyValue::Angles(own)
-            | PropertyValue::Factors(own) => *own = changed(*own, old, new),
-            PropertyValue::Length(own) | PropertyValue::Angle(own) => {
-                *own = changed(DVec3::splat(*own), old, new).x;
+            PropertyValue::Point(value)
+            | PropertyValue::Direction(value)
+            | PropertyValue::Angles(value)
+            | PropertyValue::Factors(value) => *value = with_changed_coordinates(*value, old, new),
+            PropertyValue::Length(value) | PropertyValue::Angle(value) => {
+                *value = with_changed_coordinates(DVec3::splat(*value), old, new).x;
             }
         }
     });

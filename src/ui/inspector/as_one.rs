@@ -6,13 +6,13 @@ use crate::editor::{Edit, Item, ItemKind};
 use crate::scene::{Mesh, Object, Scene, Shape};
 
 /// Why a group cannot be stretched.
-const SHEARED: &str = "A group with parts that are turned, or no meshes, is stretched by one factor for x, y and z alone";
+const SHEARED: &str = "A group with rotated parts, or parts that are not meshes, can only be scaled by the same factor in x, y and z";
 
 /// A transformation of all members.
 #[derive(Clone, Copy)]
 enum Change {
-    Turn(DQuat),
-    Grow(f64),
+    Rotate(DQuat),
+    Scale(f64),
     Stretch(DVec3),
 }
 
@@ -20,22 +20,24 @@ impl Change {
     /// The transformation from one mesh to another, if it is a rotation or a scaling.
     fn between(old: &Mesh, new: &Mesh) -> Option<Self> {
         if old.rotation != new.rotation {
-            return Some(Self::Turn(new.orientation() * old.orientation().inverse()));
+            return Some(Self::Rotate(
+                new.orientation() * old.orientation().inverse(),
+            ));
         }
-        let by = new.scale / old.scale;
-        match by == DVec3::splat(by.x) {
-            _ if old.scale == new.scale || !by.is_finite() => None,
-            true => (by.x > 0.0).then_some(Self::Grow(by.x)),
-            false => Some(Self::Stretch(by)),
+        let ratio = new.scale / old.scale;
+        match ratio == DVec3::splat(ratio.x) {
+            _ if old.scale == new.scale || !ratio.is_finite() => None,
+            true => (ratio.x > 0.0).then_some(Self::Scale(ratio.x)),
+            false => Some(Self::Stretch(ratio)),
         }
     }
 
     /// Applies the transformation to a member, about a point. `None` if it would shear the shape, which no shape
     /// can represent.
-    fn of(self, shape: &Shape, about: DVec3) -> Option<Shape> {
+    fn apply(self, shape: &Shape, about: DVec3) -> Option<Shape> {
         match (self, shape) {
-            (Self::Turn(by), shape) => Some(shape.turned(about, by)),
-            (Self::Grow(by), shape) => Some(shape.scaled(about, by)),
+            (Self::Rotate(by), shape) => Some(shape.turned(about, by)),
+            (Self::Scale(by), shape) => Some(shape.scaled(about, by)),
             (Self::Stretch(by), Shape::Mesh(mesh)) if mesh.rotation == DVec3::ZERO => {
                 let stretched = Mesh {
                     position: about + (mesh.position - about) * by,
@@ -50,8 +52,8 @@ impl Change {
 
     fn verb(self) -> &'static str {
         match self {
-            Self::Turn(_) => "Turn",
-            Self::Grow(_) | Self::Stretch(_) => "Resize",
+            Self::Rotate(_) => "Rotate",
+            Self::Scale(_) | Self::Stretch(_) => "Resize",
         }
     }
 }
@@ -61,11 +63,16 @@ impl Change {
 ///
 /// # Errors
 /// Why it is impossible, in words: some members would be sheared.
-pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edit, &'static str>> {
-    let Edit::Object(own, new, field) = edit else {
+pub fn transform_group(
+    scene: &Scene,
+    members: &[Item],
+    edit: &Edit,
+) -> Option<Result<Edit, &'static str>> {
+    let Edit::Object(edited, new, field) = edit else {
         return None;
     };
-    let (Shape::Mesh(old), Shape::Mesh(new)) = (&scene.objects.get(*own)?.shape, &new.shape) else {
+    let (Shape::Mesh(old), Shape::Mesh(new)) = (&scene.objects.get(*edited)?.shape, &new.shape)
+    else {
         return None;
     };
     let change = Change::between(old, new)?;
@@ -78,9 +85,9 @@ pub fn as_one(scene: &Scene, members: &[Item], edit: &Edit) -> Option<Result<Edi
         .sum();
     let about = sum / objects.len() as f64;
     let edits = objects.iter().map(|&(index, object)| {
-        let mut shape = change.of(&object.shape, about)?;
+        let mut shape = change.apply(&object.shape, about)?;
         if let Shape::Mesh(mesh) = &mut shape
-            && index == *own
+            && index == *edited
         {
             // Exactly what was typed.
             (mesh.rotation, mesh.scale) = (new.rotation, new.scale);
@@ -130,7 +137,7 @@ mod tests {
             },
             "rotation",
         );
-        let edit = as_one(&scene, &[Item::object(1), Item::object(0)], &edit)?;
+        let edit = transform_group(&scene, &[Item::object(1), Item::object(0)], &edit)?;
         match edit {
             Ok(edit) => edit.apply(&mut scene).expect("made"),
             Err(why) => return Some(Err(why)),

@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let before = &editor.shown().camera;
     let mut camera = before.clone();
     let mut rows = FieldRows::new(ui);
-    place_rows(&mut rows, editor.orientation(), &mut camera);
+    camera_rows(&mut rows, editor.orientation(), &mut camera);
     rows.heading("Vectors");
     let defaults = Camera::default();
     rows.vector(
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         &mut camera.look_at,
     );
     rows.vector(
-        &coordinate("up", "Roughly upwards; must not be along look_at"),
+        &coordinate("up", "Roughly upwards; must not be parallel to look_at"),
         defaults.up,
         &mut camera.up,
     );
@@ -84,16 +84,16 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// Rows for projection, position and angles.
-pub fn place_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
+pub fn camera_rows(rows: &mut FieldRows, angles: Orientation, camera: &mut Camera) {
     let kinds = [Projection::Perspective, Projection::Orthographic];
     rows.choice(
         "projection",
-        "Whether rays spread from the eye (P) or run side by side (O)",
+        "Whether rays spread from the eye (P) or run parallel (O)",
         &mut camera.projection,
         kinds.map(|kind| (kind, format!("{kind:?}"))),
     );
     projection_rows(rows, camera);
-    rows.heading("Place");
+    rows.heading("Placement");
     rows.vector(
         &coordinate("position", "Where the camera stands, in world units"),
         Camera::default().position,
@@ -121,7 +121,7 @@ fn projection_rows(rows: &mut FieldRows, camera: &mut Camera) {
     rows.number(
         &Field {
             name: "distance",
-            hint: "Projection distance: from the eye to the image plane, in image heights (0.001–100000). Longer is a narrower view",
+            hint: "Projection distance: from the eye to the image plane, in image heights (0.001–100000). Longer gives a narrower view",
             unit: " h",
             default: defaults.projection_distance,
             range: PROJECTION_DISTANCES,
@@ -153,7 +153,7 @@ fn angle_rows(rows: &mut FieldRows, before: Orientation, camera: &mut Camera) {
     let parts = [
         (
             "yaw",
-            "Turn to the right; 270° is as -90°",
+            "Turn to the right; 270° is the same as -90°",
             360.0,
             &mut angles.yaw,
         ),
@@ -165,7 +165,7 @@ fn angle_rows(rows: &mut FieldRows, before: Orientation, camera: &mut Camera) {
         ),
         (
             "roll",
-            "Lean to the right; 270° is as -90°",
+            "Lean to the right; 270° is the same as -90°",
             360.0,
             &mut angles.roll,
         ),

@@ -18,13 +18,13 @@ use crate::ui::rows::{EditedPart, Field, FieldRows, color_names, coordinate, fra
 use crate::words::counted;
 
 /// Maximum number of items listed as users of a color pack.
-const MOST_USERS: usize = 100;
+const MAX_LISTED_USERS: usize = 100;
 
 /// Label of the row that chooses a color pack.
 pub const COLOR_PACK: &str = "color pack";
 
 /// Label of the row that sets ambient and diffuse colour together.
-pub const BOTH: (&str, [&str; 3]) = color_names!("color");
+pub const BOTH_COLORS: (&str, [&str; 3]) = color_names!("color");
 
 /// Shows a light and its marker. Returns the edit of a field that the user set to the value it already has, if any.
 pub fn light(
@@ -50,7 +50,7 @@ pub fn light(
         ),
         &mut light.intensity,
     );
-    rows.toggle("on", "Whether it shines at all", &mut light.visible);
+    rows.toggle("on", "Whether the light is on", &mut light.visible);
     rows.heading("Marker");
     let mut has_marker = light.marker.is_some();
     rows.toggle(
@@ -92,8 +92,9 @@ fn marker_pack(scene: &Scene) -> Option<&String> {
         .iter()
         .filter_map(|light| light.marker.as_ref());
     let names = || scene.color_packs.keys();
-    let mut worn = markers.map(|marker| &marker.color_pack);
-    worn.next()
+    let mut marker_packs = markers.map(|marker| &marker.color_pack);
+    marker_packs
+        .next()
         .or_else(|| names().find(|name| *name == "light"))
         .or_else(|| names().next())
 }
@@ -139,7 +140,7 @@ fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
         .map(|name| (name.clone(), name.clone()));
     rows.choice(
         COLOR_PACK,
-        "The material, shared by everything that names it",
+        "The material, shared by everything that uses it",
         name,
         options,
     );
@@ -167,7 +168,7 @@ pub fn object(
     shape_rows(&mut rows, &mut object.shape);
     rows.toggle(
         "visible",
-        "An invisible object casts no shadow and no reflection",
+        "An invisible object casts no shadow and has no reflection",
         &mut object.visible,
     );
     if is_alone {
@@ -180,16 +181,16 @@ pub fn object(
         out.edit(Edit::object(index, object.clone(), field));
     }
     let chosen = chosen.map(|chosen| (Edit::object(index, object, chosen.field), chosen));
-    let Some((place, name, value)) = scene.color_packs.get_full(&before.color_pack) else {
+    let Some((pack_index, name, value)) = scene.color_packs.get_full(&before.color_pack) else {
         return chosen;
     };
-    let chosen = pack(ui, place, value, out).or(chosen);
+    let chosen = pack(ui, pack_index, value, out).or(chosen);
     let users = count_users(ui, scene, name);
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
         // With several objects selected, the packs of the others may be shared.
-        let can_be = users > 1 || !is_alone;
-        let unique = ui.add_enabled(can_be, egui::Button::new("Make unique"));
+        let can_be_unique = users > 1 || !is_alone;
+        let unique = ui.add_enabled(can_be_unique, egui::Button::new("Make unique"));
         let hint = if is_alone {
             "Give this object a color pack of its own"
         } else {
@@ -206,8 +207,9 @@ pub fn object(
 fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     match shape {
         Shape::Triangle(_) => {
-            let hint = "Make one mesh of this triangle and all that share corners with it";
-            if tool(rows, "Join connected", hint, true) {
+            let hint =
+                "Join this triangle and all that are connected by shared corners into one mesh";
+            if tool_button(rows, "Join connected", hint, true) {
                 out.commands.push(Command::Join);
             }
         }
@@ -217,8 +219,9 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
             if let Some(problem) = mesh.source.problem() {
                 rows.ui.label(problem);
             }
-            let hint = format!("Make an object of each triangle, up to {MOST_SEPARATE} of them");
-            if tool(rows, "Separate", &hint, mesh.is_separable()) {
+            let hint =
+                format!("Make each triangle an object of its own, up to {MOST_SEPARATE} of them");
+            if tool_button(rows, "Separate", &hint, mesh.is_separable()) {
                 out.commands.push(Command::Separate);
             }
         }
@@ -226,7 +229,7 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     }
 }
 
-fn tool(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool {
+fn tool_button(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool {
     let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
     button.hint(hint).clicked()
 }
@@ -235,9 +238,9 @@ fn tool(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool 
 /// repeated while a button is down.
 fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     let id = Id::unique(("users of a pack", name));
-    let known = ui.data(|data| data.get_temp::<(usize, usize)>(id));
+    let cached = ui.data(|data| data.get_temp::<(usize, usize)>(id));
     let is_dragging = ui.input(|input| input.pointer.any_down());
-    match known {
+    match cached {
         Some((objects, users)) if is_dragging && objects == scene.objects.len() => users,
         _ => {
             let users = Item::users_of_pack(scene, name).count();
@@ -271,16 +274,16 @@ pub fn pack(
     let mut pack = before.clone();
     let defaults = ColorPack::default();
     let mut rows = FieldRows::new(ui);
-    let mut both = pack.diffuse;
+    let mut shared_color = pack.diffuse;
     rows.color(
-        BOTH,
-        "Ambient and diffuse at once: what most things are painted in",
+        BOTH_COLORS,
+        "Ambient and diffuse together: the colour of most objects",
         defaults.diffuse,
-        &mut both,
+        &mut shared_color,
     );
     // Also if the chosen colour is what diffuse was, as ambient may have been another.
-    if both != pack.diffuse || rows.chosen().is_some() {
-        (pack.ambient, pack.diffuse) = (both, both);
+    if shared_color != pack.diffuse || rows.chosen().is_some() {
+        (pack.ambient, pack.diffuse) = (shared_color, shared_color);
     }
     rows.color(
         color_names!("ambient"),
@@ -313,7 +316,7 @@ pub fn pack(
     );
     rows.toggle(
         "reflective",
-        "Whether the surface mirrors the scene: through its specular color, as bright as all lights together",
+        "Whether the surface mirrors the scene; reflections are multiplied by the specular color and the sum of all light intensities",
         &mut pack.reflective,
     );
     if pack == *before {
@@ -332,7 +335,7 @@ pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = FieldRows::new(ui);
     rows.heading("Used by");
     let mut all = Item::users_of_pack(scene, name);
-    let users: Vec<Item> = all.by_ref().take(MOST_USERS).collect();
+    let users: Vec<Item> = all.by_ref().take(MAX_LISTED_USERS).collect();
     let more = all.count();
     if users.is_empty() {
         ui.weak("Nothing yet – choose it in an object's ColorPack");

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use egui::{Button, Id, Ui};
 
-use super::camera::place_rows;
+use super::camera::camera_rows;
 use super::items::angle;
-use super::title::{tell_different, title};
+use super::title::{list_differing, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Owners, Scene,
@@ -20,14 +20,14 @@ use crate::ui::rows::{Field, FieldRows, coordinate, fraction};
 use crate::words::counted;
 
 /// The interpolations that a key of any value can have.
-const STAYING: [Interpolation; 3] = [
+const BASIC_INTERPOLATIONS: [Interpolation; 3] = [
     Interpolation::Smooth,
     Interpolation::Linear,
     Interpolation::Hold,
 ];
 
-/// Shows time, way (interpolation), pace (easing) and value of the selected key. For several keys, the time is that
-/// of the earliest, which the others follow; way and pace are those of the first, and changes are applied to all.
+/// Shows time, interpolation, easing and value of the selected key. For several keys, the time is that of the
+/// earliest, which the others follow; interpolation and easing are those of the first, and changes are applied to all.
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(&first) = places.first() else { return };
@@ -47,23 +47,29 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let paces = places.iter().filter_map(|place| animation.at_place(*place));
     let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
     let different = [
-        ("way", paces.iter().any(|(way, _)| *way != pace.0)),
-        ("pace", paces.iter().any(|(_, easing)| *easing != pace.1)),
+        (
+            "interpolation",
+            paces
+                .iter()
+                .any(|(interpolation, _)| *interpolation != pace.0),
+        ),
+        ("easing", paces.iter().any(|(_, easing)| *easing != pace.1)),
     ];
-    tell_different(
+    list_differing(
         ui,
         different
             .into_iter()
-            .filter_map(|(name, is_so)| is_so.then_some(name)),
+            .filter_map(|(name, differs)| differs.then_some(name)),
     );
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = FieldRows::new(ui);
     rows.number(&time_field(only.is_some()), &mut new_time);
-    pace_rows(&mut rows, editor, &mut new_pace);
+    interpolation_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
-    // With several keys, choosing the shown way or pace again applies it to those that differ.
+    // With several keys, choosing the shown interpolation or easing again applies it to those that differ.
     let chosen = rows.chosen().map(|chosen| chosen.field);
-    let chosen = chosen.filter(|field| only.is_none() && ["way", "pace"].contains(field));
+    let chosen =
+        chosen.filter(|field| only.is_none() && ["interpolation", "easing"].contains(field));
     let changed = rows.changed().or(chosen);
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
@@ -72,13 +78,13 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
         out.edit(Edit::animation(value, "Key: value"));
     } else if new_pace != pace || only.is_none() && changed.is_some() {
         // With several keys, each keeps the part that was not changed.
-        let (way, easing) = new_pace;
-        let (changed, label) = if changed == Some("pace") {
+        let (interpolation, easing) = new_pace;
+        let (changed, label) = if changed == Some("easing") {
             let changed = animation.with_pace(places, |(_, each)| *each = easing);
-            (changed, "Key: pace")
+            (changed, "Key: easing")
         } else {
-            let changed = animation.with_pace(places, |(each, _)| *each = way);
-            (changed, "Key: way")
+            let changed = animation.with_pace(places, |(each, _)| *each = interpolation);
+            (changed, "Key: interpolation")
         };
         out.edit(Edit::animation(changed, label));
     }
@@ -90,10 +96,10 @@ fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> O
         let key = animation.keys.get(place.index)?;
         let mut camera = key.value.clone();
         rows.heading("Camera");
-        place_rows(rows, Orientation::of(&key.value), &mut camera);
-        let own = Keys::from([place]);
+        camera_rows(rows, Orientation::of(&key.value), &mut camera);
+        let only_key = Keys::from([place]);
         return (camera != key.value)
-            .then(|| animation.with_each(&own, |key| key.value = camera.clone()));
+            .then(|| animation.with_each(&only_key, |key| key.value = camera.clone()));
     };
     let track = animation.tracks.get(track)?;
     let key = track.keys.get(place.index)?;
@@ -109,62 +115,62 @@ fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> O
 }
 
 fn intensity_field() -> Field {
-    fraction("intensity", "How bright it is at that time, 0–1", 1.0)
+    fraction("intensity", "Brightness at that time, 0–1", 1.0)
 }
 
 fn point_field(target: &Target) -> Field {
     match target {
         Target::ObjectRotation(_) => {
-            let hint = "How it is turned at that time: about x, then y, then z";
+            let hint = "Rotation at that time: about x, then y, then z";
             angle("rotation", hint)
         }
-        _ => coordinate("position", "Where it is at that time, in world units"),
+        _ => coordinate("position", "Position at that time, in world units"),
     }
 }
 
 /// Reports how many keys were replaced by a change of time, once it is over, whatever is selected by then.
-pub fn tell_of_moved(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
+pub fn report_replaced_keys(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
     if ui.input(|input| input.pointer.any_down()) {
         return;
     }
-    let moved: Option<Moved> = ui.data_mut(|data| data.remove_temp(drag_id()));
-    let before = moved.map_or(0, |moved| moved.animation.places().len());
+    let before_move: Option<BeforeMove> = ui.data_mut(|data| data.remove_temp(drag_id()));
+    let before = before_move.map_or(0, |before_move| before_move.animation.places().len());
     let replaced = before.saturating_sub(editor.scene().animation.places().len());
     out.actions
-        .extend(told_of_replaced(replaced).map(Action::Tell));
+        .extend(replaced_keys_message(replaced).map(Action::Tell));
 }
 
 /// The state before the time of keys was dragged: a drag replaces the keys that it ends on, not those that it
 /// passes.
 #[derive(Clone, Default)]
-struct Moved {
+struct BeforeMove {
     animation: Arc<Animation>,
     places: Keys,
     time: f64,
 }
 
-/// Moves the selected keys so that the earliest of them is at time `to`.
-fn move_key(ui: &Ui, editor: &Editor, to: f64, out: &mut UiRequests) {
+/// Moves the selected keys so that the earliest of them is at `new_time`.
+fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
     let Some((time, _)) = animation.span_of(places) else {
         return;
     };
-    let now = || Moved {
+    let current = || BeforeMove {
         animation: Arc::clone(animation),
         places: places.clone(),
         time,
     };
     // Also stored for a typed time, which is reported on in the next frame.
-    let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), now).clone());
-    let later = to - before.time;
-    let (moved, new) = before.animation.with_moved(&before.places, later, false);
+    let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), current).clone());
+    let offset = new_time - before.time;
+    let (moved, new) = before.animation.with_moved(&before.places, offset, false);
     out.edit(Edit::animation(moved, "Key: time"));
     out.select(new);
 }
 
 /// The message after moved keys have replaced `count` others, if any.
-pub fn told_of_replaced(count: usize) -> Option<String> {
+pub fn replaced_keys_message(count: usize) -> Option<String> {
     let them = if count == 1 { "it" } else { "them" };
     let keys = counted(count, "key");
     (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))
@@ -177,10 +183,10 @@ fn drag_id() -> Id {
 
 fn time_field(is_only: bool) -> Field {
     let (name, hint) = if is_only {
-        let hint = "Seconds from the start; it takes the place of a key that is there";
+        let hint = "Seconds from the start; replaces a key that is already there";
         ("time", hint)
     } else {
-        let hint = "Seconds from the start to the earliest of them; the others follow";
+        let hint = "Seconds from the start to the earliest of them; the others move along";
         ("first at", hint)
     };
     Field {
@@ -193,16 +199,20 @@ fn time_field(is_only: bool) -> Field {
     }
 }
 
-fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpolation, Easing)) {
-    let ways = key_ways(editor, editor.selection().keys(), *way);
-    let can_orbit = ways.len() > STAYING.len();
+fn interpolation_rows(
+    rows: &mut FieldRows,
+    editor: &Editor,
+    (interpolation, easing): &mut (Interpolation, Easing),
+) {
+    let interpolations = interpolations_for(editor, editor.selection().keys(), *interpolation);
+    let can_orbit = interpolations.len() > BASIC_INTERPOLATIONS.len();
     rows.choice(
-        "way",
-        "How it goes on to the next key.\nsmooth: in a curve\nlinear: straight\nhold: stays, then cuts\norbit: on an arc around a point",
-        way,
-        ways.into_iter().map(|way| (way, way.name().to_owned())),
+        "interpolation",
+        "Interpolation to the next key.\nsmooth: along a curve\nlinear: straight\nhold: stays, then jumps\norbit: along an arc around a point",
+        interpolation,
+        interpolations.into_iter().map(|kind| (kind, kind.name().to_owned())),
     );
-    if let Interpolation::Orbit { around } = way
+    if let Interpolation::Orbit { around } = interpolation
         && can_orbit
     {
         let field = coordinate("around", "The point that the arc goes around");
@@ -210,29 +220,34 @@ fn pace_rows(rows: &mut FieldRows, editor: &Editor, (way, pace): &mut (Interpola
         rows.vector(&field, before, around);
     }
     rows.choice(
-        "pace",
-        "How fast, on the way to the next key",
-        pace,
+        "easing",
+        "How the speed changes on the way to the next key",
+        easing,
         Easing::ALL.map(|easing| (easing, easing.name().to_owned())),
     );
 }
 
-/// The ways that all of these keys can have; `own` is that of one of them. Only positions can orbit a point.
-pub fn key_ways(editor: &Editor, places: &Keys, own: Interpolation) -> Vec<Interpolation> {
+/// The interpolations that all of these keys can have; `current` is that of one of them. Only positions can orbit a
+/// point.
+pub fn interpolations_for(
+    editor: &Editor,
+    places: &Keys,
+    current: Interpolation,
+) -> Vec<Interpolation> {
     let tracks = &editor.scene().animation.tracks;
-    let has_place = |place: &KeyPlace| {
+    let is_position = |place: &KeyPlace| {
         let track = place.track.and_then(|track| tracks.get(track));
         track.is_none_or(|track| track.target.is_position())
     };
-    let around = match own {
+    let around = match current {
         Interpolation::Orbit { around } => around,
         _ => editor.middle(),
     };
-    let mut ways = STAYING.to_vec();
-    if places.iter().all(has_place) {
-        ways.push(Interpolation::Orbit { around });
+    let mut interpolations = BASIC_INTERPOLATIONS.to_vec();
+    if places.iter().all(is_position) {
+        interpolations.push(Interpolation::Orbit { around });
     }
-    ways
+    interpolations
 }
 
 fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -241,16 +256,16 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let only = places.first().filter(|_| places.len() == 1);
     let is_of_camera = only.is_some_and(|only| only.track.is_none());
     let overwrite = ui.add_enabled(is_of_camera, Button::new("Overwrite with view"));
-    let hint = "Put the camera of the view into this key";
+    let hint = "Set this key to the current view";
     if overwrite.hint(hint).clicked() {
         let view = editor.shown().camera.clone();
         let changed = animation.with_each(places, |key| key.value = view.clone());
         out.edit(Edit::animation(changed, "Overwrite key"));
     }
     let go = ui.add_enabled(only.is_some(), Button::new("Go there"));
-    let there = only.and_then(|only| animation.at_place(*only));
-    if go.hint("Put the playhead on this key").clicked()
-        && let Some((time, _)) = there
+    let timed_key = only.and_then(|only| animation.at_place(*only));
+    if go.hint("Move the playhead to this key").clicked()
+        && let Some((time, _)) = timed_key
     {
         out.time(Time::Seek(time));
     }
@@ -260,10 +275,10 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 /// A value that can be keyed: its name, and the targets that have it.
-pub type Keyed = (&'static str, Vec<Target>);
+pub type KeyableValue = (&'static str, Vec<Target>);
 
 /// The values of these items that can be keyed.
-pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
+pub fn keyable_values(scene: &Scene, items: &[Item]) -> Vec<KeyableValue> {
     let [mut positions, mut rotations, mut intensities] = [const { Vec::new() }; 3];
     for item in items {
         let name = || item.name(scene).unwrap_or_default().to_owned();
@@ -293,7 +308,7 @@ pub fn keyed_values(scene: &Scene, items: &[Item]) -> Vec<Keyed> {
 
 /// Shows a button for each value that can be keyed. It sets keys at the playhead for all items with that value, or
 /// removes them if all have one there.
-pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiRequests) {
+pub fn key_buttons(ui: &mut Ui, editor: &Editor, values: &[KeyableValue], out: &mut UiRequests) {
     if values.is_empty() {
         return;
     }
@@ -308,20 +323,20 @@ pub fn of_values(ui: &mut Ui, editor: &Editor, values: &[Keyed], out: &mut UiReq
             let count = tracks
                 .map(|place| animation.tracks[*place].keys.len())
                 .max();
-            let there: Keys = targets.iter().filter_map(key_of).collect();
-            let has_key = there.len() == targets.len();
+            let existing: Keys = targets.iter().filter_map(key_of).collect();
+            let has_key = existing.len() == targets.len();
             let count = count.map_or(String::new(), |count| format!(" ({count})"));
             let text = (icons::text(icons::KEY), format!("{name}{count}"));
             let button = Button::selectable(has_key, text);
             let hint = if has_key {
-                "Take the key at the playhead away"
+                "Remove the key at the playhead"
             } else {
                 "Set a key at the playhead; from then on, changes set keys"
             };
             let button = ui.add(button).hint(hint);
             if button.accessible_name(format!("key {name}")).clicked() {
                 let changed = if has_key {
-                    animation.without_keys(&there)
+                    animation.without_keys(&existing)
                 } else {
                     // Existing keys at the playhead stay as they are.
                     let targets = targets.iter().filter(|target| key_of(target).is_none());

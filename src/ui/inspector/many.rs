@@ -4,10 +4,10 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::alike::{chosen_for_all, for_all, packs_of, values};
-use super::as_one::as_one;
+use super::as_one::transform_group;
 use super::items;
 use super::keys;
-use super::title::{name_field, tell_different, title, title_field};
+use super::title::{list_differing, name_field, title, title_field};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
@@ -19,7 +19,7 @@ use crate::ui::rows::EditedPart;
 use crate::ui::theme::{GRID, ROW};
 
 /// Maximum number of items that are compared, or whose keys are examined, in every UI frame.
-const MOST: usize = 500;
+const MAX_COMPARED: usize = 500;
 
 /// Shows the properties of the item selected last; a change is made to all items that have the property.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -31,61 +31,66 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         title(ui, icons::SELECTED, &format!("{} items", selected.len()));
     }
     let Some(&last) = selected.last() else { return };
-    tell_different(ui, differences(scene, selected, last).into_iter());
+    list_differing(ui, differences(scene, selected, last).into_iter());
     let name = last.name(scene).unwrap_or_default();
     let moves = if group.is_some() {
-        "a position, a rotation or a scale is that of the group"
+        "position, rotation and scale are those of the group"
     } else {
-        "a position that is dragged moves them together"
+        "dragging a position moves them together"
     };
     ui.weak(format!(
-        "These are the values of {name}. A change is made to all that have the property; {moves}."
+        "These are the values of {name}. A change applies to all items that have the property; {moves}."
     ));
     let can_join = is_enabled(&Command::Join, editor);
     let join = ui.add_enabled(can_join, egui::Button::new("Join"));
-    let hint = "Make one mesh of these triangles and meshes, with the name and the color pack of the first";
+    let hint =
+        "Join these triangles and meshes into one mesh with the name and color pack of the first";
     if join.hint(hint).on_disabled_hover_text(hint).clicked() {
         out.commands.push(Command::Join);
     }
-    if selected.len() <= MOST {
-        keys::of_values(ui, editor, &keys::keyed_values(scene, selected), out);
+    if selected.len() <= MAX_COMPARED {
+        keys::key_buttons(ui, editor, &keys::keyable_values(scene, selected), out);
     } else {
-        ui.weak(format!("Keys are set for up to {MOST} things at once."));
+        ui.weak(format!(
+            "Keys can be set for up to {MAX_COMPARED} items at once."
+        ));
     }
     ui.add_space(GRID);
-    let mut own = UiRequests::default();
+    let mut requests = UiRequests::default();
     let index = last.index;
     let chosen = match last.kind {
         ItemKind::Object => {
             let object = scene.objects.get(index);
-            object.and_then(|object| items::object(ui, scene, (index, false), object, &mut own))
+            object
+                .and_then(|object| items::object(ui, scene, (index, false), object, &mut requests))
         }
         ItemKind::Light => {
             let light = scene.lights.get(index);
-            light.and_then(|light| items::light(ui, scene, index, light, &mut own))
+            light.and_then(|light| items::light(ui, scene, index, light, &mut requests))
         }
         ItemKind::Pack => {
             let pack = scene.color_packs.get_index(index);
             pack.and_then(|(name, pack)| {
-                title_field(ui, icons::PACK, last, name, &mut own);
-                items::pack(ui, index, pack, &mut own)
+                title_field(ui, icons::PACK, last, name, &mut requests);
+                items::pack(ui, index, pack, &mut requests)
             })
         }
     };
     // Members of a group keep their own positions, rotations and so on; otherwise they would end up in one place.
-    let stays = |chosen: &(Edit, EditedPart)| {
+    let is_shared = |chosen: &(Edit, EditedPart)| {
         let is_pack = matches!(chosen.0, Edit::Pack(..));
         group.is_none() || is_pack || ["radius", items::COLOR_PACK].contains(&chosen.1.field)
     };
-    if let Some(chosen) = chosen.filter(stays) {
+    if let Some(chosen) = chosen.filter(is_shared) {
         out.edit(chosen_for_all(scene, selected, chosen));
     }
     // A group moves as a whole. Other items move together in a drag only: a click elsewhere that ends typing is
     // none.
     let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
-    for action in own.actions {
+    for action in requests.actions {
         out.actions.push(match action {
-            Action::Edit(edit) => match group.and_then(|_| as_one(scene, selected, &edit)) {
+            Action::Edit(edit) => match group.and_then(|_| transform_group(scene, selected, &edit))
+            {
                 Some(Ok(all)) => Action::Edit(all),
                 Some(Err(why)) => Action::Tell(why.to_owned()),
                 None => Action::Edit(for_all(scene, selected, edit, is_together)),
@@ -111,7 +116,7 @@ fn group_title(ui: &mut Ui, group: &str, out: &mut UiRequests) {
 
 /// The properties in which others differ from `last`.
 fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
-    let selected = &selected[selected.len().saturating_sub(MOST)..];
+    let selected = &selected[selected.len().saturating_sub(MAX_COMPARED)..];
     let mut names = match last.kind {
         ItemKind::Light => light_differences(scene, selected),
         ItemKind::Object => object_differences(scene, selected, last),
@@ -137,7 +142,7 @@ type IsAlike<T> = fn(&T, &T) -> bool;
 
 /// The properties in which the color packs that are selected or used differ.
 fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
-    let packs = packs_of(scene, selected).filter_map(|place| scene.color_packs.get_index(place));
+    let packs = packs_of(scene, selected).filter_map(|index| scene.color_packs.get_index(index));
     let packs: Vec<&ColorPack> = packs.map(|(_, pack)| pack).collect();
     differing(
         &packs,
@@ -153,20 +158,20 @@ fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
 
 /// The properties in which other objects differ from the last one.
 fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str> {
-    let of = |item: &Item| scene.objects.get(item.index);
-    let Some(object) = of(&last) else {
+    let object_of = |item: &Item| scene.objects.get(item.index);
+    let Some(object) = object_of(&last) else {
         return Vec::new();
     };
     let others: Vec<&Object> = selected
         .iter()
         .filter(|item| item.kind == ItemKind::Object)
-        .filter_map(of)
+        .filter_map(object_of)
         .collect();
-    let theirs: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
+    let other_values: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
     let mut names = Vec::new();
     for (name, value) in values(&object.shape) {
-        let is_other = |(own, other): &(&str, DVec3)| *own == name && *other != value;
-        if theirs.iter().flatten().any(is_other) {
+        let differs = |(other_name, other): &(&str, DVec3)| *other_name == name && *other != value;
+        if other_values.iter().flatten().any(differs) {
             names.push(name);
         }
     }

@@ -20,7 +20,7 @@ mod needs;
 
 mod world;
 
-pub use keys::{key_ways, told_of_replaced};
+pub use keys::{interpolations_for, replaced_keys_message};
 pub use quality::{Outcome, Quality};
 pub use title::name_field;
 use title::title_field;
@@ -37,7 +37,7 @@ use crate::scene::Target;
 
 /// Shows the properties of the selection and pushes the user's changes.
 pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiRequests) {
-    keys::tell_of_moved(ui, editor, out);
+    keys::report_replaced_keys(ui, editor, out);
     // One scroll area per selected thing, so that each is shown from its top.
     let selection = editor.selection();
     let area = ScrollArea::vertical().id_salt((discriminant(selection), selection.item()));
@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
             Selection::World => {
                 world::show(ui, scene, out);
                 let ambient = ("ambient", vec![Target::AmbientIntensity]);
-                keys::of_values(ui, editor, &[ambient], out);
+                keys::key_buttons(ui, editor, &[ambient], out);
             }
             Selection::Render => world::show_picture(ui, editor, quality, out),
             Selection::Items(items) => match items[..] {
@@ -89,5 +89,5 @@ fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
             }
         }
     }
-    keys::of_values(ui, editor, &keys::keyed_values(scene, &[item]), out);
+    keys::key_buttons(ui, editor, &keys::keyable_values(scene, &[item]), out);
 }

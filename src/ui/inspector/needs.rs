@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
     let response = header.show(ui, |ui| {
         for need in lines(ui, editor).iter() {
             ui.add_space(GRID / 2.0);
-            ui.label(&need.what).hint(format!("Spares {}.", need.saves));
+            ui.label(&need.what).hint(format!("Saves: {}", need.saves));
             ui.label(
                 RichText::new(format!("because {}", need.why))
                     .small()
@@ -38,16 +38,16 @@ pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
 fn lines(ui: &Ui, editor: &Editor) -> Arc<Vec<Need>> {
     let id = Id::unique("needs of the scene");
     let (document, revision) = (editor.documents(), editor.shown_revision());
-    let known = ui.data(|data| data.get_temp::<(u64, u64, Arc<Vec<Need>>)>(id));
-    let known = known.filter(|(of, ..)| *of == document);
-    match known {
+    let cached = ui.data(|data| data.get_temp::<(u64, u64, Arc<Vec<Need>>)>(id));
+    let cached = cached.filter(|(of, ..)| *of == document);
+    match cached {
         // Determining them plans the scene from scratch: not in every frame of a drag or a flight.
         Some((_, of, lines)) if of == revision || editor.is_moving() => lines,
         _ => {
             let scene = editor.shown();
             let lines = Arc::new(needs(scene, &RenderRequest::still(scene)));
-            let known = (document, revision, Arc::clone(&lines));
-            ui.data_mut(|data| data.insert_temp(id, known));
+            let cached = (document, revision, Arc::clone(&lines));
+            ui.data_mut(|data| data.insert_temp(id, cached));
             lines
         }
     }

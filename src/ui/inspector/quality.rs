@@ -15,7 +15,7 @@ const GOALS: [(Option<Goal>, &str); 5] = [
     (None, "as set below"),
     (
         Some(Goal::Within(EIGHT_BIT_FLOOR)),
-        "automatic: below what 8 bits show",
+        "automatic: below 8-bit rounding",
     ),
     (
         Some(Goal::Within(FIFTY_DECIBELS)),
@@ -37,14 +37,14 @@ const FIFTY_DECIBELS: f64 = 3.162_277_660_168_379_5e-3;
 #[derive(Debug, Default)]
 pub struct Quality {
     /// The measurement in progress.
-    asked: Option<Asked>,
+    pending: Option<PendingMeasurement>,
     /// The last choice, and the document it was made for (see [`Editor::documents`]).
     choice: Option<(Choice, u64)>,
 }
 
 /// A measurement in progress: its goal, its scene, and the document (see [`Editor::documents`]).
 #[derive(Debug)]
-struct Asked {
+struct PendingMeasurement {
     goal: Goal,
     scene: Arc<Scene>,
     document: u64,
@@ -69,25 +69,25 @@ impl Quality {
     /// Shows the row to choose a goal.
     pub fn show(&mut self, rows: &mut FieldRows, editor: &Editor, out: &mut UiRequests) {
         // The document that was asked about is no longer open.
-        self.asked
-            .take_if(|asked| asked.document != editor.documents());
-        let asked = self.asked.as_ref().map(|asked| asked.goal);
-        let before = asked.or(self.in_use(editor).map(|choice| choice.goal));
+        self.pending
+            .take_if(|pending| pending.document != editor.documents());
+        let pending = self.pending.as_ref().map(|pending| pending.goal);
+        let before = pending.or(self.in_use(editor).map(|choice| choice.goal));
         let mut goal = before;
-        let hint = "Measures the samplings on this scene, in the size of its still picture, and takes the cheapest \
-            that is close enough, or the closest that is fast enough (one undo step); Needs tells why";
+        let hint = "Measures the samplings on this scene at the size of its still picture and uses the cheapest \
+            that is accurate enough, or the most accurate that is fast enough (one undo step); Needs tells why";
         let options = GOALS.map(|(goal, words)| (goal, words.to_owned()));
         rows.choice("quality", hint, &mut goal, options);
         if goal != before {
             self.choice = None;
-            self.asked = goal.map(|goal| Asked {
+            self.pending = goal.map(|goal| PendingMeasurement {
                 goal,
                 scene: Arc::clone(editor.shown()),
                 document: editor.documents(),
             });
             out.questions.extend(goal.map(Question::Quality));
         }
-        if self.asked.is_some() {
+        if self.pending.is_some() {
             rows.ui.horizontal(|ui| {
                 ui.spinner();
                 ui.weak("measuring this scene");
@@ -99,17 +99,17 @@ impl Quality {
     /// as it does all the time.
     pub fn take(&mut self, goal: Goal, choice: Option<Choice>, editor: &Editor) -> Option<Outcome> {
         let (scene, document) = (editor.shown(), editor.documents());
-        let asked = self
-            .asked
-            .take_if(|own| own.goal == goal && own.document == document)?;
+        let pending = self
+            .pending
+            .take_if(|pending| pending.goal == goal && pending.document == document)?;
         let choice = choice?;
-        if asked.scene.render.antialias != scene.render.antialias {
+        if pending.scene.render.antialias != scene.render.antialias {
             // The user has meanwhile chosen another sampling.
             return None;
         }
-        if !asked.scene.has_same_look(scene) {
+        if !pending.scene.has_same_look(scene) {
             let scene = Arc::clone(scene);
-            self.asked = Some(Asked { scene, ..asked });
+            self.pending = Some(PendingMeasurement { scene, ..pending });
             return Some(Outcome::Ask(Question::Quality(goal)));
         }
         self.choice = Some((choice, document));

@@ -33,7 +33,7 @@ pub fn title_field(ui: &mut Ui, icon: MaterialIcon, item: Item, name: &str, out:
 pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String> {
     // The typed text is stored with the name that it replaces: another item may be shown by now.
     let typed = ui.data(|data| data.get_temp::<(String, String)>(id));
-    let typed = typed.filter(|(over, _)| over == name);
+    let typed = typed.filter(|(replaced, _)| replaced == name);
     let mut text = typed.map_or_else(|| name.to_owned(), |(_, text)| text);
     let field = TextEdit::singleline(&mut text)
         .id(id)
@@ -56,7 +56,7 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
 }
 
 /// Lists the properties in which the selected items differ.
-pub fn tell_different(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
+pub fn list_differing(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
     let names: Vec<&str> = names.collect();
     if names.is_empty() {
         // The widgets below must keep the automatic ids that they have with the line, even during a drag.

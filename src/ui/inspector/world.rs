@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
     );
     rows.toggle(
         "light markers",
-        "Light visualization: whether the markers of lights are seen (I on, U off)",
+        "Light visualization: whether light markers are shown (I on, U off)",
         &mut markers,
     );
     if ambient != scene.ambient_intensity {
@@ -81,17 +81,17 @@ pub fn show_picture(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &m
             range: 1.0..=f64::from(MAX_SIDE),
             speed: Some(2.0),
         };
-        whole(&mut rows, &field, value);
+        integer_row(&mut rows, &field, value);
     }
     let reflections = Field {
         name: "reflections",
-        hint: "How often light may be mirrored on its way to the eye",
+        hint: "How many times light may be reflected on its way to the eye",
         unit: "",
         default: f64::from(defaults.reflection_limit),
         range: 0.0..=f64::from(MAX_REFLECTIONS),
         speed: Some(0.05),
     };
-    whole(&mut rows, &reflections, &mut render.reflection_limit);
+    integer_row(&mut rows, &reflections, &mut render.reflection_limit);
     rows.heading("Traced with");
     quality.show(&mut rows, editor, out);
     render.visit_settings(&mut MethodRows(&mut rows));
@@ -122,7 +122,7 @@ impl VisitSetting for MethodRows<'_, '_> {
 }
 
 /// A row for an integer.
-fn whole(rows: &mut FieldRows, field: &Field, value: &mut u32) {
+fn integer_row(rows: &mut FieldRows, field: &Field, value: &mut u32) {
     let mut real = f64::from(*value);
     rows.number(field, &mut real);
     *value = real.round() as u32;

@@ -17,21 +17,21 @@ const SCALE: f32 = 2.0;
 /// Maximum number of maps side by side; further ones wrap to the next line.
 const COLUMNS: usize = 4;
 /// Space for the numbers to the left of a map and below it.
-const BESIDE: f32 = 34.0;
-const BELOW: f32 = 34.0;
+const LEFT_MARGIN: f32 = 34.0;
+const BOTTOM_MARGIN: f32 = 34.0;
 /// Heights of a map, of a line chart over one axis, and of a line of text.
-const MAP: f32 = 92.0;
-const LINES: f32 = 120.0;
-const LINE: f32 = 15.0;
+const MAP_HEIGHT: f32 = 92.0;
+const CHART_HEIGHT: f32 = 120.0;
+const LINE_HEIGHT: f32 = 15.0;
 /// Height of a map with the text above and below it.
-const MAP_WITH_WORDS: f32 = 3.0 * LINE + MAP + BELOW;
+const LABELLED_MAP_HEIGHT: f32 = 3.0 * LINE_HEIGHT + MAP_HEIGHT + BOTTOM_MARGIN;
 
 /// Draws all maps into one picture.
 pub fn stability_picture(maps: &[Map]) -> Image {
     let rows: Vec<&[Map]> = maps
         .chunk_by(|one, other| one.subject == other.subject)
         .collect();
-    let height = rows.iter().map(|row| height_of(row)).sum::<f32>() + 6.0 * GRID + LINE;
+    let height = rows.iter().map(|row| height_of(row)).sum::<f32>() + 6.0 * GRID + LINE_HEIGHT;
     draw(
         (WIDTH as u32, height.ceil() as u32),
         SCALE,
@@ -40,15 +40,15 @@ pub fn stability_picture(maps: &[Map]) -> Image {
             let area = ui.max_rect().shrink(2.0 * GRID);
             let mut top = area.top() + show_scale(ui, area);
             for row in &rows {
-                let rest = Rect::from_min_max(pos2(area.left(), top), area.max);
-                show_row(ui, rest, row);
+                let remaining = Rect::from_min_max(pos2(area.left(), top), area.max);
+                show_row(ui, remaining, row);
                 top += height_of(row);
             }
         },
     )
 }
 
-fn is_flat(map: &Map) -> bool {
+fn has_single_row(map: &Map) -> bool {
     map.up.values.len() == 1
 }
 
@@ -57,14 +57,14 @@ fn has_failures(map: &Map) -> bool {
 }
 
 fn height_of(row: &[Map]) -> f32 {
-    let head = 2.0 * LINE + GRID;
+    let header = 2.0 * LINE_HEIGHT + GRID;
     if !row.iter().any(has_failures) {
-        return head + LINE;
+        return header + LINE_HEIGHT;
     }
-    if is_flat(&row[0]) {
-        return head + LINES + BELOW + GRID;
+    if has_single_row(&row[0]) {
+        return header + CHART_HEIGHT + BOTTOM_MARGIN + GRID;
     }
-    head + row.len().div_ceil(COLUMNS) as f32 * MAP_WITH_WORDS
+    header + row.len().div_ceil(COLUMNS) as f32 * LABELLED_MAP_HEIGHT
 }
 
 /// Draws the colour scale; returns its height.
@@ -74,7 +74,7 @@ fn show_scale(ui: &Ui, area: Rect) -> f32 {
     let words = painter.text(
         area.min,
         Align2::LEFT_TOP,
-        "Share of tries that fail, 32-bit numbers. The default method comes first.",
+        "Share of trials that fail in single precision (32 bits). The default method comes first.",
         small.clone(),
         colors.text,
     );
@@ -99,18 +99,21 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
         small.clone(),
         colors.muted,
     );
-    let top = area.top() + LINE + GRID / 2.0;
-    if is_flat(&row[0]) && row.iter().any(has_failures) {
-        let room = Rect::from_min_size(pos2(area.left(), top), vec2(area.width(), LINES + BELOW));
-        return rates::show(ui, room, row);
+    let top = area.top() + LINE_HEIGHT + GRID / 2.0;
+    if has_single_row(&row[0]) && row.iter().any(has_failures) {
+        let chart_area = Rect::from_min_size(
+            pos2(area.left(), top),
+            vec2(area.width(), CHART_HEIGHT + BOTTOM_MARGIN),
+        );
+        return rates::show(ui, chart_area, row);
     }
     let width = area.width() / COLUMNS as f32;
-    let mut beside = BESIDE;
+    let mut left_margin = LEFT_MARGIN;
     for (index, map) in row.iter().enumerate() {
         let (line, column) = (index / COLUMNS, index % COLUMNS);
-        let top = top + line as f32 * MAP_WITH_WORDS;
+        let top = top + line as f32 * LABELLED_MAP_HEIGHT;
         if column == 0 {
-            beside = BESIDE;
+            left_margin = LEFT_MARGIN;
         }
         let left = area.left() + column as f32 * width;
         let at = pos2(left, top);
@@ -126,9 +129,9 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
         } else {
             colors.muted
         };
-        let has_squares = has_failures(map) && !is_flat(map);
+        let has_squares = has_failures(map) && !has_single_row(map);
         let below = if has_squares {
-            top + LINE
+            top + LINE_HEIGHT
         } else {
             method.bottom() + 1.0
         };
@@ -142,12 +145,19 @@ fn show_row(ui: &Ui, area: Rect, row: &[Map]) {
         if !has_squares {
             continue;
         }
-        let corner = pos2(left + beside, top + 3.0 * LINE);
-        let squares = Rect::from_min_size(corner, vec2(width - beside - 2.0 * GRID, MAP));
+        let corner = pos2(left + left_margin, top + 3.0 * LINE_HEIGHT);
+        let squares =
+            Rect::from_min_size(corner, vec2(width - left_margin - 2.0 * GRID, MAP_HEIGHT));
         heat::paint_squares(ui, map, squares);
-        label_axes(painter, map, squares, (&small, colors.muted), beside > GRID);
+        label_axes(
+            painter,
+            map,
+            squares,
+            (&small, colors.muted),
+            left_margin > GRID,
+        );
         // The vertical axis is labelled once per line of maps.
-        beside = GRID;
+        left_margin = GRID;
     }
 }
 
@@ -156,15 +166,15 @@ fn label_axes(
     map: &Map,
     squares: Rect,
     (font, color): (&FontId, egui::Color32),
-    has_up: bool,
+    has_vertical_labels: bool,
 ) {
     let font = FontId::new(font.size * 0.85, font.family.clone());
     let write = |at: Pos2, anchor: Align2, text: String| {
         painter.text(at, anchor, text, font.clone(), color);
     };
     let (columns, rows) = (map.across.values.len(), map.up.values.len());
-    let every = columns.div_ceil(6);
-    for (column, value) in map.across.values.iter().enumerate().step_by(every) {
+    let stride = columns.div_ceil(6);
+    for (column, value) in map.across.values.iter().enumerate().step_by(stride) {
         let x = squares.left() + (column as f32 + 0.5) * squares.width() / columns as f32;
         write(
             pos2(x, squares.bottom() + 2.0),
@@ -172,13 +182,16 @@ fn label_axes(
             number(*value),
         );
     }
-    let below = pos2(squares.center().x, squares.bottom() + 2.0 + LINE * 0.85);
+    let below = pos2(
+        squares.center().x,
+        squares.bottom() + 2.0 + LINE_HEIGHT * 0.85,
+    );
     write(below, Align2::CENTER_TOP, map.across.name.to_owned());
-    if !has_up {
+    if !has_vertical_labels {
         return;
     }
-    let every = rows.div_ceil(6);
-    for (row, value) in map.up.values.iter().enumerate().step_by(every) {
+    let stride = rows.div_ceil(6);
+    for (row, value) in map.up.values.iter().enumerate().step_by(stride) {
         let y = squares.bottom() - (row as f32 + 0.5) * squares.height() / rows as f32;
         write(
             pos2(squares.left() - 4.0, y),
@@ -186,6 +199,6 @@ fn label_axes(
             number(*value),
         );
     }
-    let above = pos2(squares.left() - BESIDE, squares.top() - 2.0);
+    let above = pos2(squares.left() - LEFT_MARGIN, squares.top() - 2.0);
     write(above, Align2::LEFT_BOTTOM, map.up.name.to_owned());
 }

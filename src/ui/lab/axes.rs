@@ -5,11 +5,11 @@ use std::ops::RangeInclusive;
 use egui_plot::{GridInput, GridMark};
 
 /// Axes that span more decades than this have no marks, as these would be less than a pixel apart.
-pub const MOST_DECADES: f64 = 40.0;
+pub const MAX_DECADES: f64 = 40.0;
 
 fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
     let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
-    if f64::from(high - low) > MOST_DECADES {
+    if f64::from(high - low) > MAX_DECADES {
         return Vec::new();
     }
     let decade = |exponent: i32| {
@@ -18,8 +18,8 @@ fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
             step_size: 1.0,
         })
     };
-    let in_sight = |mark: &GridMark| (input.bounds.0..=input.bounds.1).contains(&mark.value);
-    (low..=high).flat_map(decade).filter(in_sight).collect()
+    let is_visible = |mark: &GridMark| (input.bounds.0..=input.bounds.1).contains(&mark.value);
+    (low..=high).flat_map(decade).filter(is_visible).collect()
 }
 
 /// Marks at the powers of ten, and at 2 and 5 times these on axes that span few decades.

@@ -8,24 +8,24 @@ use egui_plot::{
 };
 
 use super::super::theme::{GRID, palette};
-use super::axes::{MOST_DECADES, decades, decibels, plain, power_of_ten, powers};
-use super::labels::{along, place};
+use super::axes::{MAX_DECADES, decades, decibels, plain, power_of_ten, powers};
+use super::labels::{place_level_name, place_names};
 use super::marks;
 use crate::lab::{Family, front};
 
 /// Spacing of axis labels in points, on small charts side by side, over which the labels fade in.
-const CLOSE_LABELS: Rangef = Rangef {
+const COMPACT_LABEL_SPACING: Rangef = Rangef {
     min: 12.0,
     max: 18.0,
 };
 /// Maximum distance of the pointer from a dot that it selects, in points.
-const REACH: f32 = 14.0;
+const SELECT_DISTANCE: f32 = 14.0;
 /// Distance of a name from its dot, in points, beyond which a line connects the two.
-const TIED: f32 = 14.0;
+const LEADER_LINE_DISTANCE: f32 = 14.0;
 /// Height in points below which the axes have short names.
-const LOW: f32 = 220.0;
+const LOW_HEIGHT: f32 = 220.0;
 /// Margin around the dots, in decades.
-const AROUND: (f64, f64) = (0.12, 0.2);
+const MARGIN_DECADES: (f64, f64) = (0.12, 0.2);
 
 /// The content of a chart.
 #[derive(Clone, Debug, Default)]
@@ -33,9 +33,9 @@ pub struct Chart {
     /// The title, which sums up the chart.
     pub title: String,
     /// Label of the horizontal axis.
-    pub cost: String,
+    pub cost_label: String,
     /// Label of the vertical axis.
-    pub error: &'static str,
+    pub error_label: &'static str,
     /// Whether there is an axis in decibels as well.
     pub has_decibels: bool,
     /// The dots.
@@ -45,7 +45,7 @@ pub struct Chart {
     /// Horizontal lines: name and error.
     pub levels: Vec<(&'static str, f64)>,
     /// The area of errors below this is shaded, as they are not visible.
-    pub invisible: Option<f64>,
+    pub invisible_below: Option<f64>,
     /// The dot of the scene's current settings.
     pub in_use: Option<usize>,
     /// The selected dot.
@@ -70,7 +70,7 @@ pub struct ChartDot {
     /// Vertical coordinate.
     pub error: f64,
     /// The text of its tooltip.
-    pub words: String,
+    pub tooltip: String,
     /// Whether its cost is unreliable.
     pub is_doubtful: bool,
 }
@@ -78,7 +78,7 @@ pub struct ChartDot {
 impl Chart {
     /// Indices of the dots on the Pareto front. Doubtful ones are left out.
     fn front(&self) -> Vec<usize> {
-        let certain = |spot: &ChartDot| {
+        let reliable_cost = |spot: &ChartDot| {
             if spot.is_doubtful {
                 f64::NAN
             } else {
@@ -88,7 +88,7 @@ impl Chart {
         let dots: Vec<_> = self
             .spots
             .iter()
-            .map(|spot| (certain(spot), spot.error))
+            .map(|spot| (reliable_cost(spot), spot.error))
             .collect();
         front(&dots)
     }
@@ -108,15 +108,23 @@ impl Chart {
             return None;
         };
         self.show_title(ui);
-        let is_low = ui.available_height() < LOW;
+        let is_low = ui.available_height() < LOW_HEIGHT;
         let response = self.plot(is_low).show(ui, |plot| {
             // Invisible points, for the axis ranges and for hovering; the visible chart is drawn below.
             let corners = PlotPoints::from(corners(extent).to_vec());
-            let unseen = Color32::TRANSPARENT;
-            plot.points(Points::new("", corners).color(unseen).allow_hover(false));
+            let transparent = Color32::TRANSPARENT;
+            plot.points(
+                Points::new("", corners)
+                    .color(transparent)
+                    .allow_hover(false),
+            );
             for (index, spot) in self.spots.iter().enumerate() {
-                let at = PlotPoints::from(vec![self.at(index)]);
-                plot.points(Points::new(spot.name.clone(), at).color(unseen).radius(0.5));
+                let at = PlotPoints::from(vec![self.log_position(index)]);
+                plot.points(
+                    Points::new(spot.name.clone(), at)
+                        .color(transparent)
+                        .radius(0.5),
+                );
             }
         });
         self.draw(ui, &response.transform);
@@ -164,29 +172,33 @@ impl Chart {
     }
 
     fn plot(&self, is_low: bool) -> Plot<'_> {
-        let whole = self.error;
+        let full_label = self.error_label;
         let error = if is_low || self.is_one_of_several {
-            whole.split(' ').next().unwrap_or(whole)
+            full_label.split(' ').next().unwrap_or(full_label)
         } else {
-            whole
+            full_label
         };
-        let mut upwards = AxisHints::new_y().label(error).formatter(power_of_ten);
+        let mut error_axis = AxisHints::new_y().label(error).formatter(power_of_ten);
         if self.is_one_of_several {
-            upwards = upwards.label_spacing(CLOSE_LABELS);
+            error_axis = error_axis.label_spacing(COMPACT_LABEL_SPACING);
         }
-        let mut up = vec![upwards];
+        let mut vertical_axes = vec![error_axis];
         if self.has_decibels && !self.is_one_of_several {
             let decibels = AxisHints::new_y().label("dB").formatter(decibels);
-            up.push(decibels.placement(HPlacement::Right));
+            vertical_axes.push(decibels.placement(HPlacement::Right));
         }
-        let mut across = AxisHints::new_x().label(&self.cost).formatter(plain);
+        let mut cost_axis = AxisHints::new_x().label(&self.cost_label).formatter(plain);
         if self.is_one_of_several {
-            let unit = self.cost.split(' ').next().unwrap_or(&self.cost);
-            across = across.label(unit).label_spacing(CLOSE_LABELS);
+            let unit = self
+                .cost_label
+                .split(' ')
+                .next()
+                .unwrap_or(&self.cost_label);
+            cost_axis = cost_axis.label(unit).label_spacing(COMPACT_LABEL_SPACING);
         }
         Plot::new("lab chart")
-            .custom_x_axes(vec![across])
-            .custom_y_axes(up)
+            .custom_x_axes(vec![cost_axis])
+            .custom_y_axes(vertical_axes)
             .x_grid_spacer(|input| decades(&input))
             .y_grid_spacer(|input| powers(&input))
             .show_grid(false)
@@ -204,35 +216,40 @@ impl Chart {
         let painter = ui.painter().with_clip_rect(frame);
         let on_screen = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
         let height = |error: f64| on_screen([0.0, error.log10()]).y;
-        if let Some(error) = self.invisible {
+        if let Some(error) = self.invisible_below {
             let below = Rect::from_min_max(pos2(frame.left(), height(error)), frame.max);
             painter.rect_filled(below, 0, colors.raised.gamma_multiply(0.6));
         }
         draw_decades(&painter, transform, Stroke::new(0.5, colors.line));
         let small = TextStyle::Small.resolve(ui.style());
         let dots: Vec<Pos2> = (0..self.spots.len())
-            .map(|index| on_screen(self.at(index)))
+            .map(|index| on_screen(self.log_position(index)))
             .collect();
         let front = self.front();
         let stairs = stairs(frame, front.iter().map(|&index| dots[index]));
-        let mut taken: Vec<Rect> = stairs
+        let mut occupied: Vec<Rect> = stairs
             .windows(2)
             .map(|step| Rect::from_two_pos(step[0], step[1]))
             .collect();
-        let around = |dot: &Pos2| Rect::from_center_size(*dot, Vec2::splat(2.0 * marks::RADIUS));
-        let mut beside: Vec<Rect> = dots.iter().map(around).chain(taken.clone()).collect();
+        let marker_rect =
+            |dot: &Pos2| Rect::from_center_size(*dot, Vec2::splat(2.0 * marks::RADIUS));
+        let mut level_obstacles: Vec<Rect> = dots
+            .iter()
+            .map(marker_rect)
+            .chain(occupied.clone())
+            .collect();
         for &(name, level) in &self.levels {
             let y = height(level);
             let dashes = [pos2(frame.left(), y), pos2(frame.right(), y)];
             let line = Stroke::new(1.0, colors.muted);
             painter.extend(egui::Shape::dashed_line(&dashes, line, 6.0, 5.0));
-            taken.push(Rect::from_two_pos(dashes[0], dashes[1]));
+            occupied.push(Rect::from_two_pos(dashes[0], dashes[1]));
             let text = painter.layout_no_wrap(name.to_owned(), small.clone(), colors.muted);
             let within = frame.shrink2(vec2(GRID, 0.0));
-            if let Some(place) = along(y, text.size(), (within, &beside)) {
-                painter.galley(place.min, text, colors.muted);
-                taken.push(place);
-                beside.push(place);
+            if let Some(label_rect) = place_level_name(y, text.size(), (within, &level_obstacles)) {
+                painter.galley(label_rect.min, text, colors.muted);
+                occupied.push(label_rect);
+                level_obstacles.push(label_rect);
             }
         }
         for series in &self.series {
@@ -260,7 +277,7 @@ impl Chart {
         self.write_names(
             &painter,
             (&dots, &front),
-            (&taken, &bars, small),
+            (&occupied, &bars, small),
             [colors.text, colors.muted],
         );
     }
@@ -270,7 +287,7 @@ impl Chart {
         &self,
         painter: &Painter,
         (dots, front): (&[Pos2], &[usize]),
-        (taken, bars, font): (&[Rect], &[Rect], FontId),
+        (occupied, bars, font): (&[Rect], &[Rect], FontId),
         [strong, weak]: [Color32; 2],
     ) {
         let frame = painter.clip_rect();
@@ -303,32 +320,34 @@ impl Chart {
             .map(|(&index, text)| (dots[index], text.size()))
             .collect();
         let frame = frame.shrink(GRID / 2.0);
-        let places = place(&names, (dots, marks::RADIUS + 2.0), (frame, taken, bars));
-        for ((index, text), place) in order.into_iter().zip(texts).zip(places) {
-            let Some(place) = place else { continue };
-            let near = place.clamp(dots[index]);
-            if near.distance(dots[index]) > TIED {
+        let label_rects = place_names(&names, (dots, marks::RADIUS + 2.0), (frame, occupied, bars));
+        for ((index, text), label_rect) in order.into_iter().zip(texts).zip(label_rects) {
+            let Some(label_rect) = label_rect else {
+                continue;
+            };
+            let line_end = label_rect.clamp(dots[index]);
+            if line_end.distance(dots[index]) > LEADER_LINE_DISTANCE {
                 let line = Stroke::new(0.5, weak);
-                painter.line_segment([dots[index], near], line);
+                painter.line_segment([dots[index], line_end], line);
             }
-            painter.galley(place.min, text, color(index));
+            painter.galley(label_rect.min, text, color(index));
         }
     }
 
     /// Position of a dot on the logarithmic axes.
-    fn at(&self, index: usize) -> [f64; 2] {
+    fn log_position(&self, index: usize) -> [f64; 2] {
         let spot = &self.spots[index];
         [spot.cost.log10(), spot.error.log10()]
     }
 
     fn nearest(&self, pointer: Pos2, on_screen: impl Fn(PlotPoint) -> Pos2) -> Option<usize> {
         let distance = |index: usize| {
-            let [x, y] = self.at(index);
+            let [x, y] = self.log_position(index);
             on_screen(PlotPoint::new(x, y)).distance(pointer)
         };
         (0..self.spots.len())
             .map(|index| (index, distance(index)))
-            .filter(|(_, distance)| *distance <= REACH)
+            .filter(|(_, distance)| *distance <= SELECT_DISTANCE)
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(index, _)| index)
     }
@@ -338,13 +357,13 @@ impl Chart {
             return None;
         };
         let spot = self.spots.iter().find(|spot| spot.name == *plot_name);
-        spot.map(|spot| format!("{}\n{}", spot.name, spot.words))
+        spot.map(|spot| format!("{}\n{}", spot.name, spot.tooltip))
     }
 }
 
 /// The ends of the axes, as powers of ten, with a margin.
 fn corners([costs, errors]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
-    let (across, up) = AROUND;
+    let (across, up) = MARGIN_DECADES;
     [
         [costs.0.log10() - across, errors.0.log10() - up],
         [costs.1.log10() + across, errors.1.log10() + up],
@@ -380,7 +399,7 @@ fn draw_decades(painter: &Painter, transform: &PlotTransform, line: Stroke) {
     let (frame, bounds) = (*transform.frame(), transform.bounds());
     let on_screen = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));
     let within = |low: f64, high: f64| (low.ceil() as i32)..=(high.floor() as i32);
-    if bounds.width().max(bounds.height()) > MOST_DECADES {
+    if bounds.width().max(bounds.height()) > MAX_DECADES {
         return;
     }
     for power in within(bounds.min()[0], bounds.max()[0]) {
@@ -408,7 +427,7 @@ mod tests {
             cost,
             quartiles: (cost, cost),
             error,
-            words: String::new(),
+            tooltip: String::new(),
             is_doubtful,
         };
         let chart = Chart {

@@ -8,57 +8,61 @@ use crate::image::Image;
 
 /// What is shown of a dot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Face {
+pub enum ComparisonMode {
     /// Its picture.
     Picture,
     /// The reference picture.
     Reference,
     /// The absolute difference of each channel, multiplied by this.
-    Off(u32),
+    Absolute(u32),
     /// The signed difference around middle grey, multiplied by this.
     Signed(u32),
 }
 
-/// The faces on offer, each with its label and hint.
-pub const FACES: [(Face, &str, &str); 7] = [
-    (Face::Picture, "This", "The picture of the dot"),
+/// The modes on offer, each with its label and hint.
+pub const COMPARISON_MODES: [(ComparisonMode, &str, &str); 7] = [
+    (ComparisonMode::Picture, "This", "The picture of the dot"),
     (
-        Face::Reference,
+        ComparisonMode::Reference,
         "Reference",
         "What the picture should be; hold B to see it for a moment",
     ),
-    (Face::Off(1), "Difference ×1", "How far each channel is off"),
     (
-        Face::Off(8),
+        ComparisonMode::Absolute(1),
+        "Difference ×1",
+        "How far each channel is off",
+    ),
+    (
+        ComparisonMode::Absolute(8),
         "×8",
-        "How far each channel is off, eight times enlarged",
+        "How far each channel is off, magnified 8 times",
     ),
     (
-        Face::Off(64),
+        ComparisonMode::Absolute(64),
         "×64",
-        "How far each channel is off, 64 times enlarged",
+        "How far each channel is off, magnified 64 times",
     ),
     (
-        Face::Signed(8),
+        ComparisonMode::Signed(8),
         "Signed ×8",
-        "Too bright is above grey, too dark below; eight times enlarged",
+        "Above grey is too bright, below too dark; magnified 8 times",
     ),
     (
-        Face::Signed(64),
+        ComparisonMode::Signed(64),
         "Signed ×64",
-        "Too bright is above grey, too dark below; 64 times enlarged",
+        "Above grey is too bright, below too dark; magnified 64 times",
     ),
 ];
 
-/// Computes the picture of a face.
-pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
+/// Computes the picture of a mode.
+pub fn compose(picture: &Image, reference: &Image, mode: ComparisonMode) -> Image {
     let channel = |a: u8, b: u8| {
-        let off = i64::from(a) - i64::from(b);
-        let shown = match face {
-            Face::Picture => i64::from(a),
-            Face::Reference => i64::from(b),
-            Face::Off(gain) => off.abs() * i64::from(gain),
-            Face::Signed(gain) => 128 + off * i64::from(gain),
+        let difference = i64::from(a) - i64::from(b);
+        let shown = match mode {
+            ComparisonMode::Picture => i64::from(a),
+            ComparisonMode::Reference => i64::from(b),
+            ComparisonMode::Absolute(gain) => difference.abs() * i64::from(gain),
+            ComparisonMode::Signed(gain) => 128 + difference * i64::from(gain),
         };
         shown.clamp(0, 255) as u8
     };
@@ -74,31 +78,31 @@ pub fn compose(picture: &Image, reference: &Image, face: Face) -> Image {
     }
 }
 
-/// The texture of the face on screen.
+/// The texture of the picture on screen.
 #[derive(Default)]
 pub struct Comparison {
     texture: Option<TextureHandle>,
-    /// The dot, the face and the study that the texture shows.
-    shown: Option<(usize, Face, u64)>,
+    /// The dot, the mode and the study that the texture shows.
+    shown: Option<(usize, ComparisonMode, u64)>,
 }
 
 impl Comparison {
-    /// Draws a face in the rectangle of the live view. A tooltip shows the pixel under the pointer.
+    /// Draws a picture of a dot in the rectangle of the live view. A tooltip shows the pixel under the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         place: Place,
-        (dot, face, study): (usize, Face, u64),
+        (dot, mode, study): (usize, ComparisonMode, u64),
         (picture, reference): (&Image, &Image),
     ) -> Response {
-        self.upload(ui.ctx(), (dot, face, study), picture, reference);
+        self.upload(ui.ctx(), (dot, mode, study), picture, reference);
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Lab picture"));
         if let Some(texture) = &self.texture {
             paint(ui.painter(), texture, place.rect);
         }
         if let Some(pointer) = response.hover_pos() {
-            let text = pixel(
+            let text = describe_pixel(
                 picture,
                 reference,
                 (pointer - place.rect.min) / place.rect.size(),
@@ -111,7 +115,7 @@ impl Comparison {
     fn upload(
         &mut self,
         ctx: &Context,
-        key: (usize, Face, u64),
+        key: (usize, ComparisonMode, u64),
         picture: &Image,
         reference: &Image,
     ) {
@@ -131,14 +135,17 @@ impl Comparison {
 }
 
 /// Describes a pixel and its reference; `at` is the position as fractions of width and height.
-fn pixel(picture: &Image, reference: &Image, at: egui::Vec2) -> String {
-    let place = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
-    let (x, y) = (place(at.x, picture.width), place(at.y, picture.height));
+fn describe_pixel(picture: &Image, reference: &Image, at: egui::Vec2) -> String {
+    let pixel_index = |share: f32, count: usize| ((share * count as f32) as usize).min(count - 1);
+    let (x, y) = (
+        pixel_index(at.x, picture.width),
+        pixel_index(at.y, picture.height),
+    );
     let [a, b] = [picture, reference].map(|image| image.pixels[y * image.width + x]);
-    let off = [0, 1, 2].map(|c| i32::from(a[c]) - i32::from(b[c]));
+    let difference = [0, 1, 2].map(|c| i32::from(a[c]) - i32::from(b[c]));
     format!(
         "pixel {x}, {y}\nthis {} {} {}\nreference {} {} {}\ndifference {:+} {:+} {:+}",
-        a[0], a[1], a[2], b[0], b[1], b[2], off[0], off[1], off[2]
+        a[0], a[1], a[2], b[0], b[1], b[2], difference[0], difference[1], difference[2]
     )
 }
 
@@ -154,12 +161,12 @@ mod tests {
             pixels: vec![pixel],
         };
         let (a, b) = (one([10, 200, 30, 255]), one([12, 100, 30, 255]));
-        let shown = |face| compose(&a, &b, face).pixels[0];
-        assert_eq!(shown(Face::Picture), [10, 200, 30, 255]);
-        assert_eq!(shown(Face::Reference), [12, 100, 30, 255]);
-        assert_eq!(shown(Face::Off(1)), [2, 100, 0, 255]);
-        assert_eq!(shown(Face::Off(8)), [16, 255, 0, 255]);
-        assert_eq!(shown(Face::Signed(8)), [112, 255, 128, 255]);
-        assert!(pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("difference -2 +100 +0"));
+        let shown = |mode| compose(&a, &b, mode).pixels[0];
+        assert_eq!(shown(ComparisonMode::Picture), [10, 200, 30, 255]);
+        assert_eq!(shown(ComparisonMode::Reference), [12, 100, 30, 255]);
+        assert_eq!(shown(ComparisonMode::Absolute(1)), [2, 100, 0, 255]);
+        assert_eq!(shown(ComparisonMode::Absolute(8)), [16, 255, 0, 255]);
+        assert_eq!(shown(ComparisonMode::Signed(8)), [112, 255, 128, 255]);
+        assert!(describe_pixel(&a, &b, egui::vec2(0.9, 0.9)).ends_with("difference -2 +100 +0"));
     }
 }

@@ -4,9 +4,9 @@ use egui::{Button, RichText, Ui};
 
 use super::super::requests::UiRequests;
 use super::super::theme::GRID;
-use super::comparison::FACES;
+use super::comparison::COMPARISON_MODES;
 use super::dots::figures;
-use super::panel::{DETAILS, Lab};
+use super::panel::{DETAILS_WIDTH, Lab};
 use crate::editor::{Edit, Editor};
 use crate::lab::{Candidate, Family, account};
 use crate::plan::Model;
@@ -15,23 +15,22 @@ use crate::ui::hint::Hinted as _;
 
 /// Whether the scene can adopt the settings of a candidate, with the label of the button and its hint.
 fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {
-    let word = "Use this";
+    let label = "Use this";
     if candidate.family == Family::Referee {
-        let hint = "It is another program, and only looked at here";
-        (false, word, hint)
+        let hint = "Another program, shown only for comparison";
+        (false, label, hint)
     } else if candidate.model == Model::Unculled {
-        (false, word, "It is the default, with nothing spared")
+        (false, label, "The default method, with no work skipped")
     } else if candidate.upscale > 1 {
-        (false, word, "A scene is never traced smaller than it is")
+        (false, label, "A scene is never traced at a reduced size")
     } else if is_used {
         (false, "In use", "The scene is traced with these settings")
     } else if candidate.model == Model::Everything {
-        let hint =
-            "A scene cannot ask for what it does not need; its formulas are used without that";
-        (true, word, hint)
+        let hint = "A scene cannot ask for unnecessary work; only the formulas are adopted";
+        (true, label, hint)
     } else {
         let hint = "Trace the scene with these settings (one undo step)";
-        (true, word, hint)
+        (true, label, hint)
     }
 }
 
@@ -44,36 +43,36 @@ impl Lab {
         dots: &[Vec<usize>],
         out: &mut UiRequests,
     ) {
-        ui.set_width(DETAILS - GRID);
+        ui.set_width(DETAILS_WIDTH - GRID);
         let chosen = self
             .chosen
             .and_then(|index| self.study.as_ref()?.measurements.get(index));
         let Some(dot) = chosen else {
             if !dots.is_empty() {
-                ui.weak("Click a dot to look at its picture.");
+                ui.weak("Click a dot to see its picture.");
             }
             return;
         };
-        let equals = self.equals_of_chosen(dots);
+        let same_dot = self.same_dot_as_chosen(dots);
         ui.label(RichText::new(&dot.candidate.name).strong());
         let study = self.study.as_deref();
         let account = study
             .zip(self.chosen)
             .map(|(study, index)| account(study, index));
         ui.horizontal_wrapped(|ui| {
-            for (face, name, hint) in FACES {
-                ui.selectable_value(&mut self.face, face, name).hint(hint);
+            for (mode, name, hint) in COMPARISON_MODES {
+                ui.selectable_value(&mut self.mode, mode, name).hint(hint);
             }
         });
         let candidate = &dot.candidate;
-        let own = &editor.shown().render;
+        let current = &editor.shown().render;
         let render = Render {
-            width: own.width,
-            height: own.height,
+            width: current.width,
+            height: current.height,
             ..candidate.render.clone()
         };
-        let (can, word, hint) = adoption(candidate, render == *own);
-        let adopt = ui.add_enabled(can, Button::new(word));
+        let (can_adopt, label, hint) = adoption(candidate, render == *current);
+        let adopt = ui.add_enabled(can_adopt, Button::new(label));
         let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
         if adopt.clicked() {
             out.edit(Edit::Render(render, "settings from the lab"));
@@ -83,11 +82,11 @@ impl Lab {
             .hint(dot.candidate.words());
         ui.add_space(GRID / 2.0);
         ui.label(RichText::new(figures(dot)).monospace());
-        if equals.len() > 1 {
-            ui.weak("One dot with");
+        if same_dot.len() > 1 {
+            ui.weak("Shares its dot with");
             ui.horizontal_wrapped(|ui| {
                 let chosen = self.chosen;
-                let others = equals.iter().filter(|(index, _)| Some(*index) != chosen);
+                let others = same_dot.iter().filter(|(index, _)| Some(*index) != chosen);
                 for (number, (index, name)) in others.enumerate() {
                     if number > 0 {
                         ui.weak("·");
@@ -101,7 +100,7 @@ impl Lab {
     }
 
     /// The measurements in the same dot as the selected one, with their names.
-    fn equals_of_chosen(&self, dots: &[Vec<usize>]) -> Vec<(usize, String)> {
+    fn same_dot_as_chosen(&self, dots: &[Vec<usize>]) -> Vec<(usize, String)> {
         let (Some(chosen), Some(study)) = (self.chosen, &self.study) else {
             return Vec::new();
         };

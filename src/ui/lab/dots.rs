@@ -6,9 +6,9 @@ use crate::plan::Model;
 use crate::scene::{Render, Sampling};
 
 /// Errors of 0 are drawn at half the smallest positive error, or at half of this if that is smaller.
-const NO_ERROR: f64 = 1e-4;
+const ZERO_ERROR_LIMIT: f64 = 1e-4;
 /// Maximum number of characters per line in a tooltip.
-const LINE: usize = 60;
+const MAX_TOOLTIP_LETTERS: usize = 60;
 
 /// Quantity of the horizontal axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,7 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
             cost,
             quartiles,
             error: error(dot),
-            words: format!("{}\n{}", wrapped(&account(study, members[0])), figures(dot)),
+            tooltip: format!("{}\n{}", wrapped(&account(study, members[0])), figures(dot)),
             is_doubtful: view.axes.0 == CostAxis::Time && dot.is_doubtful(),
         }
     });
@@ -75,10 +75,12 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
     // The axis is logarithmic and has no zero: dots without error are drawn below all others; the tooltip has the
     // figure.
     let errors = spots.iter().map(|spot| spot.error);
-    let least = errors.filter(|error| *error > 0.0).fold(NO_ERROR, f64::min);
+    let smallest = errors
+        .filter(|error| *error > 0.0)
+        .fold(ZERO_ERROR_LIMIT, f64::min);
     for spot in &mut spots {
         if spot.error == 0.0 {
-            spot.error = least / 2.0;
+            spot.error = smallest / 2.0;
         }
     }
     let (spots, clusters): (Vec<_>, Vec<_>) = spots
@@ -89,29 +91,29 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
     let spot_of = |index: usize| clusters.iter().position(|members| members.contains(&index));
     let (width, height) = study.size();
     let is_rmse = view.axes.1 == ErrorAxis::Rmse;
-    let truth = study.reference.as_ref().filter(|_| is_rmse);
+    let reference = study.reference.as_ref().filter(|_| is_rmse);
     let chart = Chart {
         title: match view.axes {
             (CostAxis::Time, ErrorAxis::Rmse) => finding(study, view.name),
             _ => view.name.to_owned(),
         },
-        cost: match view.axes.0 {
+        cost_label: match view.axes.0 {
             CostAxis::Time => format!("ms per {width}×{height} picture, {}", view.machine),
             CostAxis::Rays => "rays per pixel".to_owned(),
         },
-        error: match view.axes.1 {
+        error_label: match view.axes.1 {
             ErrorAxis::Rmse => "RMSE against the reference (0–1)",
             ErrorAxis::Max => "worst channel (0–1)",
-            ErrorAxis::Visible => "share of pixels > 4/255 off",
+            ErrorAxis::Visible => "share of pixels off by > 4/255",
         },
         has_decibels: is_rmse,
         series: series(study, spot_of),
-        levels: truth
-            .map(|truth| ("the reference's own error", truth.rmse))
+        levels: reference
+            .map(|reference| ("the reference's own error", reference.rmse))
             .into_iter()
             .chain(is_rmse.then_some(("below 8-bit rounding", EIGHT_BIT_FLOOR)))
             .collect(),
-        invisible: is_rmse.then_some(EIGHT_BIT_FLOOR),
+        invisible_below: is_rmse.then_some(EIGHT_BIT_FLOOR),
         in_use: in_use(study, view.render).and_then(spot_of),
         chosen: view.chosen.and_then(spot_of),
         bounds: None,
@@ -121,34 +123,34 @@ pub fn chart(study: &Study, view: &ChartView) -> (Chart, Vec<Vec<usize>>) {
     (chart, clusters)
 }
 
-fn name_of(dot: &Measurement, equals: usize) -> String {
+fn name_of(dot: &Measurement, others: usize) -> String {
     let name = &dot.candidate.name;
-    match equals {
+    match others {
         0 => name.clone(),
-        1 => format!("{name}, and 1 equal way"),
-        _ => format!("{name}, and {equals} equal ways"),
+        1 => format!("{name}, and 1 equal method"),
+        _ => format!("{name}, and {others} equal methods"),
     }
 }
 
 /// The measurement of the scene's current settings, if it was made.
 fn in_use(study: &Study, render: &Render) -> Option<usize> {
     let (width, height) = study.size();
-    let own = Render {
+    let current = Render {
         width,
         height,
         ..render.clone()
     };
-    let is_own = |dot: &Measurement| {
+    let is_current = |dot: &Measurement| {
         let candidate = &dot.candidate;
         let is_possible = candidate.upscale == 1 && candidate.model == Model::Needed;
-        is_possible && candidate.family != Family::Referee && candidate.render == own
+        is_possible && candidate.family != Family::Referee && candidate.render == current
     };
-    study.measurements.iter().position(is_own)
+    study.measurements.iter().position(is_current)
 }
 
 /// The dots to be joined by lines: grids ordered by sample count, and adaptive samplings by cost.
 fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<usize>> {
-    let ladder = |is_in: fn(Sampling) -> bool| {
+    let sorted_dots = |is_in: fn(Sampling) -> bool| {
         let measurements = study.measurements.iter().enumerate();
         let mut steps: Vec<(f64, usize)> = measurements
             .filter(|(_, dot)| {
@@ -165,8 +167,8 @@ fn series(study: &Study, spot_of: impl Fn(usize) -> Option<usize>) -> Vec<Vec<us
         spots
     };
     vec![
-        ladder(|sampling| !matches!(sampling, Sampling::Adaptive { .. })),
-        ladder(|sampling| matches!(sampling, Sampling::Adaptive { .. })),
+        sorted_dots(|sampling| !matches!(sampling, Sampling::Adaptive { .. })),
+        sorted_dots(|sampling| matches!(sampling, Sampling::Adaptive { .. })),
     ]
 }
 
@@ -176,7 +178,7 @@ fn wrapped(text: &str) -> String {
     let mut length = 0;
     for word in text.split(' ') {
         let count = word.chars().count();
-        if length > 0 && length + 1 + count > LINE {
+        if length > 0 && length + 1 + count > MAX_TOOLTIP_LETTERS {
             lines.push('\n');
             length = 0;
         } else if length > 0 {
@@ -192,7 +194,7 @@ fn wrapped(text: &str) -> String {
 /// The figures of a measurement, one per line.
 pub fn figures(dot: &Measurement) -> String {
     let time = dot.timing().map_or("not timed yet".to_owned(), |timing| {
-        let doubt = if dot.is_doubtful() { " (doubtful)" } else { "" };
+        let doubt = if dot.is_doubtful() { " (noisy)" } else { "" };
         // As a deviation to either side of the median.
         let spread = timing.spread * 50.0;
         format!(

@@ -10,9 +10,9 @@ use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, Way};
 
 /// Distance of a line's name above or below its end, in decades.
-const NAME_OFF: f64 = 0.06;
+const NAME_OFFSET: f64 = 0.06;
 /// If another line ends less than this far above, in decades, the name is written below the line.
-const NAME_ROOM: f64 = 0.25;
+const NAME_CLEARANCE: f64 = 0.25;
 
 /// Draws what was measured.
 pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
@@ -25,25 +25,27 @@ pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
 
 /// The heading, which sums up the chart.
 fn finding(growth: &Growth) -> String {
-    let ends = |way: Way| {
+    let first_and_last = |way: Way| {
         let mut costs = growth.costs.iter();
-        let is_one = |cost: &&Cost| cost.crowd == Crowd::Mesh && cost.way == way;
-        let first = costs.find(is_one)?;
-        let last = costs.rfind(is_one)?;
+        let is_of_line = |cost: &&Cost| cost.crowd == Crowd::Mesh && cost.way == way;
+        let first = costs.find(is_of_line)?;
+        let last = costs.rfind(is_of_line)?;
         Some((first, last, last.ms / first.ms))
     };
-    let Some((first, last, times)) = ends(Way::Plain) else {
+    let Some((first, last, ratio)) = first_and_last(Way::Plain) else {
         return "Time against primitives".to_owned();
     };
-    let ready = last.plan_ms;
-    let ready = ready.map(|ms| format!(" (and {:.1} s once, to make the mesh ready)", ms / 1e3));
-    let theirs = ends(Way::Embree).map(|(.., times)| format!(", one by Embree {times:.1} times"));
+    let preparation = last.plan_ms;
+    let preparation =
+        preparation.map(|ms| format!(" (plus {:.1} s once, to prepare the mesh)", ms / 1e3));
+    let embree =
+        first_and_last(Way::Embree).map(|(.., ratio)| format!(", with Embree {ratio:.1} times"));
     format!(
-        "From {} to {} faces, a picture takes {times:.1} times as long{}{}",
+        "From {} to {} faces, a picture takes {ratio:.1} times as long{}{}",
         first.primitives,
         last.primitives,
-        ready.unwrap_or_default(),
-        theirs.unwrap_or_default()
+        preparation.unwrap_or_default(),
+        embree.unwrap_or_default()
     )
 }
 
@@ -63,7 +65,7 @@ fn show(ui: &mut Ui, growth: &Growth) {
     let side = growth.side();
     Plot::new("growth chart")
         .x_axis_label("primitives")
-        .y_axis_label(format!("ms per {side}×{side} picture, made ready before"))
+        .y_axis_label(format!("ms per {side}×{side} picture, without preparation"))
         .x_axis_formatter(plain)
         .y_axis_formatter(plain)
         .x_grid_spacer(|input| decades(&input))
@@ -89,13 +91,13 @@ fn show(ui: &mut Ui, growth: &Growth) {
                 plot.points(dots.radius(4.0).color(color));
                 if let Some([x, y]) = points.last() {
                     let is_close_above =
-                        |end: &[f64; 2]| end[0] == *x && end[1] > *y && end[1] < y + NAME_ROOM;
-                    let (off, anchor) = if ends.iter().any(is_close_above) {
-                        (-NAME_OFF, Align2::RIGHT_TOP)
+                        |end: &[f64; 2]| end[0] == *x && end[1] > *y && end[1] < y + NAME_CLEARANCE;
+                    let (offset, anchor) = if ends.iter().any(is_close_above) {
+                        (-NAME_OFFSET, Align2::RIGHT_TOP)
                     } else {
-                        (NAME_OFF, Align2::RIGHT_BOTTOM)
+                        (NAME_OFFSET, Align2::RIGHT_BOTTOM)
                     };
-                    let at = PlotPoint::new(*x, y + off);
+                    let at = PlotPoint::new(*x, y + offset);
                     let text = Text::new(name.clone(), at, RichText::new(&name).size(14.0));
                     plot.text(text.color(color).anchor(anchor));
                 }

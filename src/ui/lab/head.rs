@@ -18,12 +18,12 @@ const TABS: [Choice<Tab>; 2] = [
     (
         Tab::Chart,
         "Chart",
-        "Time against error of every way of tracing the scene",
+        "Time against error of every rendering method",
     ),
     (
         Tab::Stability,
         "Stability",
-        "Where formulas break, and where the scene stands",
+        "Where formulas fail, and how close the scene is to that",
     ),
 ];
 
@@ -44,7 +44,7 @@ const ERRORS: [Choice<ErrorAxis>; 3] = [
     (
         ErrorAxis::Rmse,
         "RMSE",
-        "Root of the mean square of the error, linear, 0–1",
+        "Root mean square error, linear, 0–1",
     ),
     (
         ErrorAxis::Max,
@@ -67,7 +67,7 @@ fn choose<T: PartialEq, const N: usize>(ui: &mut Ui, chosen: &mut T, choices: [C
 
 impl Lab {
     /// Shows the row; returns a request to the render thread, if any.
-    pub(super) fn show_head(
+    pub(super) fn show_controls(
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
@@ -75,7 +75,7 @@ impl Lab {
     ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
         if timeline
-            .hint(with_key(ui, "Keys and playing", &Command::Timeline))
+            .hint(with_key(ui, "Keys and playback", &Command::Timeline))
             .clicked()
         {
             out.commands.push(Command::Timeline);
@@ -84,7 +84,7 @@ impl Lab {
         if self.tab == Tab::Stability {
             return None;
         }
-        let wish = self.show_measuring(ui, editor);
+        let request = self.show_measuring(ui, editor);
         if self.is_stale(editor) {
             let stale = RichText::new("stale: measure again").color(palette(ui.ctx()).accent);
             ui.add(Label::new(stale).extend())
@@ -99,29 +99,29 @@ impl Lab {
         if let Some(obstacle) = study.and_then(|study| study.obstacle.as_ref()) {
             ui.weak("no POV-Ray").hint(obstacle);
         }
-        wish
+        request
     }
 
     /// Shows the buttons that start and stop measuring, and the progress.
     fn show_measuring(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
-        let hint = "Trace the scene in every way there is, and compare: about half a minute";
+        let hint = "Trace the scene with every method and compare: about half a minute";
         let measure = ui.add_enabled(!self.is_running, Button::new("Measure"));
         if measure.hint(hint).clicked() {
             return Some(self.measure(editor));
         }
         if !self.is_running {
-            let hint = "Put POV-Ray, an independent engine, among the ways, where it is installed";
+            let hint = "Include POV-Ray, an independent renderer, if it is installed";
             ui.checkbox(&mut self.asks_povray, "POV-Ray").hint(hint);
             return None;
         }
         let stop = ui.button("Cancel measuring").clicked();
         let study = self.study.as_ref();
         let done = study.map_or(0.0, |study| study.progress());
-        let left = study.and_then(|study| study.remaining());
-        let left = left.map_or(String::new(), |left| {
-            format!(", {:.0} s left", left.as_secs_f64().ceil())
+        let time_left = study.and_then(|study| study.remaining());
+        let time_left = time_left.map_or(String::new(), |time_left| {
+            format!(", {:.0} s left", time_left.as_secs_f64().ceil())
         });
-        ui.label(format!("{:.0} %{left}", (done * 100.0).floor()));
+        ui.label(format!("{:.0} %{time_left}", (done * 100.0).floor()));
         self.is_running = !stop;
         stop.then_some(LabRequest::Stop)
     }
@@ -132,22 +132,22 @@ impl Lab {
             let button = ui.add_enabled(costs.is_some(), Button::new(words));
             button.hint(hint).clicked()
         };
-        let hint = "Choose the fastest dot that is no farther off than this";
+        let hint = "Choose the fastest dot whose error is no larger than this";
         let rmse = DragValue::new(&mut self.bounds.0)
             .speed(1e-5)
             .range(1e-6..=1.0);
         // Keeps each button with its limit when the row wraps.
         let by_error = ui.horizontal(|ui| {
-            let is_clicked = button(ui, "Cheapest way below", hint);
+            let is_clicked = button(ui, "Fastest below", hint);
             ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
             is_clicked
         });
-        let hint = "Choose the closest dot that takes no longer than this";
+        let hint = "Choose the most accurate dot that takes no longer than this";
         let time = DragValue::new(&mut self.bounds.1)
             .speed(0.1)
             .range(0.01..=1e5);
         let by_time = ui.horizontal(|ui| {
-            let is_clicked = button(ui, "Best way within", hint);
+            let is_clicked = button(ui, "Most accurate within", hint);
             ui.add(time.suffix(" ms")).accessible_name("time at most");
             is_clicked
         });
@@ -162,8 +162,8 @@ impl Lab {
         };
         self.notice = match found {
             Some(_) => "",
-            None if by_error => "no way is as near",
-            None => "no way is as fast",
+            None if by_error => "no method is this accurate",
+            None => "no method is this fast",
         };
         self.chosen = found;
     }

@@ -9,7 +9,7 @@ use crate::lab::stability::{Axis, Map, number};
 /// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (40.0, 30.0);
 /// Font size of the numbers.
-const SMALL: f32 = 10.0;
+const NUMBER_SIZE: f32 = 10.0;
 
 /// Draws a map of the given size, with a ring at the position of the scene, if given.
 pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>) {
@@ -27,7 +27,7 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
     let square = |index: usize| square_of(map, squares, index);
     paint_squares(ui, map, squares);
     let painter = ui.painter();
-    let font = FontId::proportional(SMALL);
+    let font = FontId::proportional(NUMBER_SIZE);
     let write = |at: Pos2, anchor: Align2, text: String| {
         painter.text(at, anchor, text, font.clone(), colors.muted);
     };
@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
     }
     let below = pos2(squares.center().x, area.bottom());
     let names = if rows > 1 {
-        format!("{}   (upwards: {})", map.across.name, map.up.name)
+        format!("{}   (vertical: {})", map.across.name, map.up.name)
     } else {
         map.across.name.to_owned()
     };
@@ -60,8 +60,8 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         painter.rect_stroke(square(index), 2, ring, StrokeKind::Inside);
     }
     if let Some(pointer) = response.hover_pos() {
-        let under = (0..map.cells.len()).find(|&index| square(index).contains(pointer));
-        if let Some(index) = under {
+        let hovered = (0..map.cells.len()).find(|&index| square(index).contains(pointer));
+        if let Some(index) = hovered {
             response.on_hover_text_at_pointer(describe(map, index));
         }
     }
@@ -72,20 +72,21 @@ pub fn is_near_failing(map: &Map, (x, y): (f64, f64)) -> bool {
     let columns = map.across.values.len();
     let (column, row) = (nearest(&map.across, x), nearest(&map.up, y));
     map.cells.iter().enumerate().any(|(index, tries)| {
-        let beside = (index % columns).abs_diff(column) <= 1;
-        beside && (index / columns).abs_diff(row) <= 1 && tries.failures > 0
+        let is_near_column = (index % columns).abs_diff(column) <= 1;
+        is_near_column && (index / columns).abs_diff(row) <= 1 && tries.failures > 0
     })
 }
 
 /// Index of the mark nearest to a value on a logarithmic axis.
 fn nearest(axis: &Axis, value: f64) -> usize {
-    let away = |mark: f64| {
+    let distance = |mark: f64| {
         if mark == 0.0 || value == 0.0 {
             // Zero is infinitely far away on a logarithmic axis: its mark stands for all values well below the next
             // one.
-            let above = axis.values.iter().copied().filter(|mark| *mark > 0.0);
-            let above = above.min_by(f64::total_cmp);
-            let is_below = above.is_some_and(|above| value < above * 0.3);
+            let smallest_positive = axis.values.iter().copied().filter(|mark| *mark > 0.0);
+            let smallest_positive = smallest_positive.min_by(f64::total_cmp);
+            let is_below =
+                smallest_positive.is_some_and(|smallest_positive| value < smallest_positive * 0.3);
             return if (mark == 0.0) == is_below {
                 0.0
             } else {
@@ -95,7 +96,7 @@ fn nearest(axis: &Axis, value: f64) -> usize {
         (mark.log10() - value.abs().log10()).abs()
     };
     let marks = axis.values.iter().enumerate();
-    let nearest = marks.min_by(|a, b| away(*a.1).total_cmp(&away(*b.1)));
+    let nearest = marks.min_by(|a, b| distance(*a.1).total_cmp(&distance(*b.1)));
     nearest.map_or(0, |(index, _)| index)
 }
 
@@ -140,13 +141,13 @@ fn describe(map: &Map, index: usize) -> String {
     );
     if cell.failures == 0 {
         return format!(
-            "{at}\nnone of {} failed: below {:.1e} with 95 %",
+            "{at}\nnone of {} failed: below {:.1e} with 95 % confidence",
             cell.tries,
             cell.bound()
         );
     }
     format!(
-        "{at}\n{} of {} failed: {:.3} %, below {:.3} % with 95 %",
+        "{at}\n{} of {} failed: {:.3} %, below {:.3} % with 95 % confidence",
         cell.failures,
         cell.tries,
         cell.rate() * 100.0,

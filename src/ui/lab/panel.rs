@@ -10,7 +10,7 @@ use super::super::requests::UiRequests;
 use super::super::theme::{GRID, ROW};
 use super::super::viewport::Place;
 use super::chart::Chart;
-use super::comparison::{Comparison, Face};
+use super::comparison::{Comparison, ComparisonMode};
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
 use super::stability::Stability;
 use crate::editor::Editor;
@@ -23,11 +23,11 @@ use crate::words::counted;
 use crate::worker::Background;
 
 /// Interval at which a stored study that is being read is polled.
-const LOOK: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Longer side of the measured pictures in pixels, small enough for a study to take seconds.
-const SIDE: u32 = 256;
+const PICTURE_SIDE: u32 = 256;
 /// Width of the column with details of a dot.
-pub(super) const DETAILS: f32 = 300.0;
+pub(super) const DETAILS_WIDTH: f32 = 300.0;
 
 /// A request of the lab to the render thread.
 pub enum LabRequest {
@@ -52,14 +52,14 @@ pub struct Lab {
     /// Whether the render thread is measuring.
     pub(super) is_running: bool,
     /// Number of the current study, to tell apart the textures of different ones.
-    number: u64,
+    study_number: u64,
     /// Name of the measured document.
     name: String,
     pub(super) cost: CostAxis,
     pub(super) error: ErrorAxis,
     pub(super) chosen: Option<usize>,
-    pub(super) face: Face,
-    look: Comparison,
+    pub(super) mode: ComparisonMode,
+    comparison: Comparison,
     /// The limits for choosing a dot: RMSE and milliseconds.
     pub(super) bounds: (f64, f64),
     /// Description of this machine.
@@ -75,7 +75,7 @@ pub struct Lab {
     folder: Option<PathBuf>,
     /// The document whose stored study was last looked for.
     looked_for: Option<u64>,
-    found: Background<Option<Study>>,
+    stored_study: Background<Option<Study>>,
 }
 
 impl Default for Lab {
@@ -83,13 +83,13 @@ impl Default for Lab {
         Self {
             study: None,
             is_running: false,
-            number: 0,
+            study_number: 0,
             name: String::new(),
             cost: CostAxis::Time,
             error: ErrorAxis::Rmse,
             chosen: None,
-            face: Face::Picture,
-            look: Comparison::default(),
+            mode: ComparisonMode::Picture,
+            comparison: Comparison::default(),
             bounds: (EIGHT_BIT_FLOOR, 100.0),
             machine: format!(
                 "{}, {}",
@@ -102,7 +102,7 @@ impl Default for Lab {
             notice: "",
             folder: None,
             looked_for: None,
-            found: Background::default(),
+            stored_study: Background::default(),
         }
     }
 }
@@ -118,16 +118,16 @@ impl Lab {
 
     /// Takes over measurements of the render thread; `is_measuring` says whether it was still measuring just
     /// before.
-    pub fn update(&mut self, is_measuring: bool, news: Option<Study>) {
+    pub fn update(&mut self, is_measuring: bool, measured: Option<Study>) {
         if self.is_running {
-            self.study = news.map(Box::new).or(self.study.take());
+            self.study = measured.map(Box::new).or(self.study.take());
             self.is_running = is_measuring;
-            self.keep_what_is_done();
+            self.store_if_finished();
         }
     }
 
     /// Stores a finished study on disk.
-    fn keep_what_is_done(&self) {
+    fn store_if_finished(&self) {
         let done = self
             .study
             .as_deref()
@@ -143,7 +143,7 @@ impl Lab {
     }
 
     /// Looks for a stored study of the document that was opened, and shows it once it is read.
-    fn look_for_kept(&mut self, ui: &Ui, editor: &Editor) {
+    fn load_stored_study(&mut self, ui: &Ui, editor: &Editor) {
         if self.is_running {
             // It would replace the study that is being measured.
             return;
@@ -155,25 +155,26 @@ impl Lab {
             self.looked_for = Some(document);
             // As for measuring: the scene with its keyed values at the current time.
             let (scene, machine) = (Arc::clone(editor.shown()), self.machine.clone());
-            self.found =
-                Background::start("glint-lab", move || kept(&scene, SIDE, &machine, &folder));
+            self.stored_study = Background::start("glint-lab", move || {
+                kept(&scene, PICTURE_SIDE, &machine, &folder)
+            });
         }
-        let study = self.found.take();
-        if self.found.is_awaited() {
-            ui.request_repaint_after(LOOK);
+        let study = self.stored_study.take();
+        if self.stored_study.is_awaited() {
+            ui.request_repaint_after(POLL_INTERVAL);
         }
         if let Some(Ok(Some(study))) = study {
-            self.take_up(Some(Box::new(study)), editor.stem());
+            self.set_study(Some(Box::new(study)), editor.stem());
         }
     }
 
     /// Shows another study, or none, of the document with this name.
-    fn take_up(&mut self, study: Option<Box<Study>>, name: String) {
+    fn set_study(&mut self, study: Option<Box<Study>>, name: String) {
         (self.study, self.name) = (study, name);
         self.chosen = None;
-        self.number += 1;
+        self.study_number += 1;
         self.notice = "";
-        self.found = Background::default();
+        self.stored_study = Background::default();
     }
 
     /// Returns whether a dot's picture is shown instead of the live view.
@@ -205,7 +206,7 @@ impl Lab {
 
     /// Drops the study, as another document is open. Returns the request that stops the measuring, if necessary.
     pub fn forget(&mut self) -> Option<LabRequest> {
-        self.take_up(None, String::new());
+        self.set_study(None, String::new());
         std::mem::take(&mut self.is_running).then_some(LabRequest::Stop)
     }
 
@@ -221,19 +222,19 @@ impl Lab {
         editor: &Editor,
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
-        self.look_for_kept(ui, editor);
+        self.load_stored_study(ui, editor);
         ui.add_space(GRID / 2.0);
-        let wish = ui.horizontal_wrapped(|ui| self.show_head(ui, editor, out));
-        let wish = wish.inner;
+        let request = ui.horizontal_wrapped(|ui| self.show_controls(ui, editor, out));
+        let request = request.inner;
         if self.tab == Tab::Stability {
             self.stability.show(ui, editor.shown());
-            return wish;
+            return request;
         }
         let Some((chart, members)) = self.chart(&editor.shown().render) else {
-            return self.show_invitation(ui, editor).or(wish);
+            return self.show_invitation(ui, editor).or(request);
         };
         ui.horizontal_top(|ui| {
-            let width = (ui.available_width() - DETAILS - 5.0 * GRID).max(120.0);
+            let width = (ui.available_width() - DETAILS_WIDTH - 5.0 * GRID).max(120.0);
             let size = egui::vec2(width, ui.available_height());
             ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
                 if let Some(chosen) = chart.show(ui) {
@@ -249,55 +250,55 @@ impl Lab {
                 ui.vertical(|ui| self.show_details(ui, editor, &members, out));
             });
         });
-        wish
+        request
     }
 
     /// Starts to measure the scene on screen.
     pub(super) fn measure(&mut self, editor: &Editor) -> LabRequest {
-        let mut study = Study::of_side(Arc::clone(editor.shown()), SIDE);
+        let mut study = Study::of_side(Arc::clone(editor.shown()), PICTURE_SIDE);
         if self.asks_povray {
             study = study.with_povray();
         }
         let study = Box::new(study);
-        self.take_up(Some(study.clone()), editor.stem());
+        self.set_study(Some(study.clone()), editor.stem());
         self.is_running = true;
         LabRequest::Measure(study)
     }
 
     /// Shown instead of the chart before anything is measured.
     fn show_invitation(&mut self, ui: &mut Ui, editor: &Editor) -> Option<LabRequest> {
-        let mut wish = None;
+        let mut request = None;
         ui.vertical_centered(|ui| {
             ui.take_available_height();
             ui.add_space((ui.available_height() / 2.0 - 2.0 * ROW).max(0.0));
-            ui.weak("Every way of tracing this scene, each a dot: how long it takes, and how far it is off. The demo takes half a minute.");
+            ui.weak("Every rendering method as a dot: how long it takes on this scene, and how large its error is. Measuring the demo takes half a minute.");
             ui.add_space(GRID);
             if primary(ui, "Measure the scene").clicked() {
-                wish = Some(self.measure(editor));
+                request = Some(self.measure(editor));
             }
         });
-        wish
+        request
     }
 
     /// Draws the selected dot's picture in the rectangle of the live view; `None` if no dot is selected.
     pub fn show_picture(&mut self, ui: &mut Ui, place: Place) -> Option<Response> {
-        let place_of_dot = self.chosen?;
+        let dot_index = self.chosen?;
         let study = self.study.as_ref()?;
-        let picture = study.measurements.get(place_of_dot)?.picture.as_ref()?;
+        let picture = study.measurements.get(dot_index)?.picture.as_ref()?;
         let reference = &study.reference.as_ref()?.picture;
-        let face = if asks_for_reference(ui) {
-            Face::Reference
+        let mode = if asks_for_reference(ui) {
+            ComparisonMode::Reference
         } else {
-            self.face
+            self.mode
         };
-        let key = (place_of_dot, face, self.number);
-        Some(self.look.show(ui, place, key, (picture, reference)))
+        let key = (dot_index, mode, self.study_number);
+        Some(self.comparison.show(ui, place, key, (picture, reference)))
     }
 
     /// Returns whether the scene has changed since it was measured. Render settings do not count, as they are what
     /// is compared; nor does a reflection limit that was measured.
     pub(super) fn is_stale(&self, editor: &Editor) -> bool {
-        let bare = |scene: &Scene| Scene {
+        let without_settings = |scene: &Scene| Scene {
             render: Render {
                 width: scene.render.width,
                 height: scene.render.height,
@@ -309,10 +310,13 @@ impl Lab {
         };
         let limit = editor.shown().render.reflection_limit;
         self.study.as_ref().is_some_and(|study| {
-            let mut ways = study.measurements.iter().map(|dot| &dot.candidate.render);
+            let mut renders = study.measurements.iter().map(|dot| &dot.candidate.render);
             !Arc::ptr_eq(study.scene(), editor.shown())
-                && (ways.all(|way| way.reflection_limit != limit)
-                    || !looks_like(&bare(study.scene()), &bare(editor.shown())))
+                && (renders.all(|render| render.reflection_limit != limit)
+                    || !looks_like(
+                        &without_settings(study.scene()),
+                        &without_settings(editor.shown()),
+                    ))
         })
     }
 
@@ -337,21 +341,22 @@ fn asks_for_reference(ui: &Ui) -> bool {
 fn looks_like(one: &Scene, other: &Scene) -> bool {
     let mut objects = one.objects.iter().zip(other.objects.iter());
     let mut lights = one.lights.iter().zip(other.lights.iter());
-    let rest = Scene {
+    let with_other_lists = Scene {
         objects: other.objects.clone(),
         lights: other.lights.clone(),
         ..one.clone()
     };
-    rest == *other
+    with_other_lists == *other
         && one.objects.len() == other.objects.len()
         && one.lights.len() == other.lights.len()
         && lights.all(|(one, other)| {
-            let place = one.position == other.position && one.intensity == other.intensity;
-            place && one.visible == other.visible && one.marker == other.marker
+            let is_same_source = one.position == other.position && one.intensity == other.intensity;
+            is_same_source && one.visible == other.visible && one.marker == other.marker
         })
         && objects.all(|(one, other)| {
-            let look = one.visible == other.visible && one.color_pack == other.color_pack;
-            look && one.shape == other.shape
+            let is_same_surface =
+                one.visible == other.visible && one.color_pack == other.color_pack;
+            is_same_surface && one.shape == other.shape
         })
 }
 

@@ -51,8 +51,8 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
     let mut charts: Vec<Chart> = charts.collect();
     let extents: Vec<_> = charts.iter().filter_map(Chart::extent).collect();
     let bounds = extents.into_iter().reduce(|[a, b], [c, d]| {
-        let wider = |one: (f64, f64), other: (f64, f64)| (one.0.min(other.0), one.1.max(other.1));
-        [wider(a, c), wider(b, d)]
+        let merged = |one: (f64, f64), other: (f64, f64)| (one.0.min(other.0), one.1.max(other.1));
+        [merged(a, c), merged(b, d)]
     });
     for chart in &mut charts {
         chart.bounds = bounds;
@@ -63,8 +63,11 @@ pub fn chart_picture(studies: &[(String, Study)], machine: &str, look: PictureLo
         if studies.len() > 1 {
             show_common(ui, &charts);
         }
-        let room = ui.available_size();
-        let tile = vec2(room.x / columns as f32 - GRID, room.y / rows as f32 - GRID);
+        let available = ui.available_size();
+        let tile = vec2(
+            available.x / columns as f32 - GRID,
+            available.y / rows as f32 - GRID,
+        );
         for row in charts.chunks(columns as usize) {
             ui.horizontal_top(|ui| {
                 for chart in row {
@@ -87,10 +90,16 @@ fn show_common(ui: &mut Ui, charts: &[Chart]) {
         marks::legend(ui, &families);
     });
     if let Some(chart) = charts.first() {
-        let error = chart.error;
-        let sized = charts.iter().all(|other| other.cost == chart.cost);
-        let cost = if sized { &chart.cost } else { "ms per picture" };
-        ui.weak(format!("To the right {cost}, upwards {error}"));
+        let error = chart.error_label;
+        let have_same_label = charts
+            .iter()
+            .all(|other| other.cost_label == chart.cost_label);
+        let cost = if have_same_label {
+            &chart.cost_label
+        } else {
+            "ms per picture"
+        };
+        ui.weak(format!("Horizontal: {cost}; vertical: {error}"));
     }
     ui.add_space(GRID);
 }

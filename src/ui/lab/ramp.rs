@@ -5,7 +5,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Theme, Ui, p
 use super::super::theme::palette;
 
 /// The lowest rate that is distinguished from rarer ones; the scale from here to 1 is logarithmic.
-pub const LOWEST: f64 = 1e-5;
+pub const LOWEST_RATE: f64 = 1e-5;
 
 /// From rare to always: the upper part of *cividis*, which stays perceptually uniform under red-green colour
 /// blindness.
@@ -22,17 +22,17 @@ const STOPS: [Color32; 6] = [
 ];
 
 /// Position of a rate on the scale, 0–1.
-pub fn share(rate: f64) -> f64 {
-    (1.0 - rate.log10() / LOWEST.log10()).clamp(0.0, 1.0)
+pub fn scale_position(rate: f64) -> f64 {
+    (1.0 - rate.log10() / LOWEST_RATE.log10()).clamp(0.0, 1.0)
 }
 
 /// The colour of a rate above 0: the higher, the more it contrasts with the background.
 pub fn color(theme: Theme, rate: f64) -> Color32 {
-    let share = match theme {
-        Theme::Dark => share(rate),
-        Theme::Light => 1.0 - share(rate),
+    let position = match theme {
+        Theme::Dark => scale_position(rate),
+        Theme::Light => 1.0 - scale_position(rate),
     };
-    let at = share * (STOPS.len() - 1) as f64;
+    let at = position * (STOPS.len() - 1) as f64;
     let first = (at.floor() as usize).min(STOPS.len() - 2);
     STOPS[first].lerp_to_gamma(STOPS[first + 1], (at - first as f64) as f32)
 }
@@ -43,7 +43,7 @@ pub fn show_bar(ui: &Ui, bar: Rect) {
     let steps = 80_u16;
     for step in 0..steps {
         let at = f32::from(step) / f32::from(steps);
-        let rate = LOWEST.powf(1.0 - f64::from(at));
+        let rate = LOWEST_RATE.powf(1.0 - f64::from(at));
         let left = bar.left() + at * bar.width();
         let part = Rect::from_min_size(
             pos2(left, bar.top()),
@@ -52,12 +52,12 @@ pub fn show_bar(ui: &Ui, bar: Rect) {
         painter.rect_filled(part, 0, color(ui.theme(), rate));
     }
     let small = TextStyle::Small.resolve(ui.style());
-    let beside = |at: Pos2, anchor: Align2, text: &str| {
+    let write = |at: Pos2, anchor: Align2, text: &str| {
         painter.text(at, anchor, text, small.clone(), palette(ui.ctx()).muted);
     };
     let gap = vec2(4.0, 0.0);
-    beside(bar.left_center() - gap, Align2::RIGHT_CENTER, "10⁻⁵");
-    beside(bar.right_center() + gap, Align2::LEFT_CENTER, "always");
+    write(bar.left_center() - gap, Align2::RIGHT_CENTER, "10⁻⁵");
+    write(bar.right_center() + gap, Align2::LEFT_CENTER, "always");
 }
 
 /// Hatches an area in which nothing was tested.
@@ -88,6 +88,6 @@ mod tests {
             let light = |rate: f64| brightness(Theme::Light, rate);
             assert!(light(pair[0]) >= light(pair[1]), "{pair:?}");
         }
-        assert_eq!((share(1.0), share(1e-9)), (1.0, 0.0));
+        assert_eq!((scale_position(1.0), scale_position(1e-9)), (1.0, 0.0));
     }
 }

@@ -9,7 +9,7 @@ use crate::lab::stability::{Map, Tries, number};
 /// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (34.0, 30.0);
 /// Width of the column that names the methods.
-const NAMES: f32 = 250.0;
+const NAMES_WIDTH: f32 = 250.0;
 
 /// Draws the rates of methods that were tested over the same axis.
 pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
@@ -18,9 +18,9 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
     let font = FontId::new(small.size * 0.85, small.family.clone());
     let frame = Rect::from_min_max(
         pos2(area.left() + MARGIN.0, area.top() + GRID / 2.0),
-        pos2(area.right() - NAMES, area.bottom() - MARGIN.1),
+        pos2(area.right() - NAMES_WIDTH, area.bottom() - MARGIN.1),
     );
-    let height = |rate: f64| frame.bottom() - ramp::share(rate) as f32 * frame.height();
+    let height = |rate: f64| frame.bottom() - ramp::scale_position(rate) as f32 * frame.height();
     for (power, name) in [
         (0, "always"),
         (-1, "10⁻¹"),
@@ -50,11 +50,11 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
     }
     let below = pos2(frame.center().x, frame.bottom() + 2.0 + small.size);
     painter.text(below, Align2::CENTER_TOP, axis.name, font, colors.muted);
-    for (place, map) in row.iter().enumerate() {
-        let color = colors.families[place % colors.families.len()];
+    for (method_index, map) in row.iter().enumerate() {
+        let color = colors.families[method_index % colors.families.len()];
         // Shifted sideways, so that equal rates do not cover each other.
-        let aside = (place as f32 - (row.len() as f32 - 1.0) / 2.0) * 5.0;
-        let at = |index: usize, rate: f64| pos2(column(index) + aside, height(rate));
+        let shift = (method_index as f32 - (row.len() as f32 - 1.0) / 2.0) * 5.0;
+        let at = |index: usize, rate: f64| pos2(column(index) + shift, height(rate));
         let points = map.cells.iter().enumerate();
         let points: Vec<_> = points.map(|(index, cell)| at(index, cell.rate())).collect();
         painter.line(points.clone(), Stroke::new(1.0, color.gamma_multiply(0.6)));
@@ -68,7 +68,7 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
                 painter.circle_stroke(*point, 3.0, Stroke::new(1.0, color));
             }
         }
-        let y = frame.top() + place as f32 * 2.0 * (small.size + 3.0);
+        let y = frame.top() + method_index as f32 * 2.0 * (small.size + 3.0);
         let name = pos2(frame.right() + 2.0 * GRID, y);
         painter.circle_filled(pos2(name.x, y + small.size / 2.0 + 1.0), 3.5, color);
         let text = pos2(name.x + GRID, y);
@@ -92,11 +92,11 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
 
 /// The interval that holds the true rate with a confidence of 90 %.
 fn interval(tries: Tries) -> (f64, f64) {
-    let others = Tries {
+    let successes = Tries {
         tries: tries.tries,
         failures: tries.tries - tries.failures,
     };
-    (1.0 - others.bound(), tries.bound())
+    (1.0 - successes.bound(), tries.bound())
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::image::Image;
 use crate::lab::{PictureLook, SharedPicture};
 
 /// The number of workers that the heading reports on.
-const TOLD: usize = 64;
+const REPORTED_WORKERS: usize = 64;
 
 /// Draws the simulated scaling of one or more scenes.
 pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
@@ -23,12 +23,17 @@ pub fn scaling_picture(pictures: &[SharedPicture], look: PictureLook) -> Image {
 
 /// The heading, which sums up the chart.
 fn finding(pictures: &[SharedPicture]) -> String {
-    let told = pictures.iter().filter(|picture| picture.workers == TOLD);
-    let told = told.map(|picture| {
+    let reported = pictures
+        .iter()
+        .filter(|picture| picture.workers == REPORTED_WORKERS);
+    let reported = reported.map(|picture| {
         let share = picture.efficiency * 100.0;
         format!("{} {:.2} ms ({share:.0} %)", picture.scene, picture.ms)
     });
-    format!("{TOLD} cores: {}", told.collect::<Vec<_>>().join(", "))
+    format!(
+        "{REPORTED_WORKERS} cores: {}",
+        reported.collect::<Vec<_>>().join(", ")
+    )
 }
 
 fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
@@ -64,8 +69,8 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
                 // When the colours repeat, lines are dashed.
                 let style = match number / colors.len() {
                     0 => LineStyle::Solid,
-                    again => LineStyle::Dashed {
-                        length: 6.0 * again as f32,
+                    cycle => LineStyle::Dashed {
+                        length: 6.0 * cycle as f32,
                     },
                 };
                 let name = scene[0].scene.clone();

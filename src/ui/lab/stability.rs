@@ -12,17 +12,17 @@ use crate::worker::Background;
 /// Number of tries as a multiple of those for a quick look; computing them takes a second.
 const EFFORT: u32 = 4;
 /// Width of the list of methods.
-const LIST: f32 = 440.0;
+const LIST_WIDTH: f32 = 440.0;
 /// Width of the colour scale.
-const BAR: f32 = 160.0;
+const BAR_WIDTH: f32 = 160.0;
 /// Space for the label to its right.
-const BESIDE: f32 = 40.0;
+const LABEL_WIDTH: f32 = 40.0;
 
 /// The state of the tab.
 #[derive(Default)]
 pub struct Stability {
     maps: Vec<Map>,
-    coming: Background<Vec<Map>>,
+    pending: Background<Vec<Map>>,
     chosen: usize,
     /// Whether the background task that computes the maps has failed.
     has_failed: bool,
@@ -36,81 +36,81 @@ impl Stability {
         }
         ui.horizontal_top(|ui| {
             ui.vertical(|ui| {
-                ui.set_width(LIST);
+                ui.set_width(LIST_WIDTH);
                 let list = ScrollArea::vertical().auto_shrink(false);
                 list.show(ui, |ui| self.show_list(ui, scene));
             });
             ui.vertical(|ui| {
                 let map = &self.maps[self.chosen];
-                let stand = map.subject.scene_position(scene);
+                let position = map.subject.scene_position(scene);
                 ui.label(headline(map));
                 ui.weak(map.sentence());
-                let warning = stand.filter(|&stand| heat::is_near_failing(map, stand));
+                let warning = position.filter(|&position| heat::is_near_failing(map, position));
                 let is_double = scene.render.precision == Precision::Double;
                 match (warning, self.is_used(scene, map)) {
-                    _ if stand.is_none() => {
-                        ui.weak("Where your scene stands on this map cannot be said.");
+                    _ if position.is_none() => {
+                        ui.weak("Where your scene is on this map cannot be determined.");
                     }
                     (Some(_), true) if is_double && map.subject.is_of_single_precision() => {
-                        ui.weak("Your scene uses this near where it fails in single precision, and is traced in double.");
+                        ui.weak("Your scene uses this close to where it fails in single precision, and is traced in double.");
                     }
                     (Some(_), true) => {
-                        let text = "Your scene uses this, within a decade of where it fails.";
+                        let text = "Your scene uses this within a factor of 10 of where it fails.";
                         ui.colored_label(palette(ui.ctx()).error, text);
                     }
                     (Some(_), false) => {
-                        ui.weak("Here this would fail your scene, within a decade.");
+                        ui.weak("Your scene is within a factor of 10 of where this would fail.");
                     }
                     _ => {
-                        ui.weak("The frame is where your scene stands.");
+                        ui.weak("The frame marks where your scene is.");
                     }
                 }
-                let asked = map.subject.method_in_use(&scene.render);
-                if let Some(asked) = asked.filter(|asked| *asked != map.method)
+                let used = map.subject.method_in_use(&scene.render);
+                if let Some(used) = used.filter(|used| *used != map.method)
                     && self.is_used(scene, map)
                 {
-                    ui.weak(format!("This is {}; your scene has {asked}.", map.method));
+                    ui.weak(format!("This is {}; your scene uses {used}.", map.method));
                 }
                 let size = ui.available_size() - vec2(GRID, GRID + ROW);
                 let size = size.min(vec2(720.0, 600.0));
-                heat::show(ui, map, size, stand);
+                heat::show(ui, map, size, position);
                 show_scale(ui, size.x);
             });
         });
     }
 
     fn fetch(&mut self, ui: &mut Ui) {
-        match self.coming.take() {
+        match self.pending.take() {
             Some(Ok(maps)) => self.maps = maps,
             Some(Err(_)) => self.has_failed = true,
-            None if !self.coming.is_awaited() && !self.has_failed => {
-                self.coming = Background::start("glint-stability", || maps(EFFORT));
+            None if !self.pending.is_awaited() && !self.has_failed => {
+                self.pending = Background::start("glint-stability", || maps(EFFORT));
             }
             None => {}
         }
         if self.has_failed {
             ui.centered_and_justified(|ui| {
-                ui.weak("The trying of the formulas has stopped with a fault of its own.")
+                ui.weak("Testing the formulas stopped because of an internal error.")
             });
             return;
         }
-        ui.centered_and_justified(|ui| ui.weak("Trying every formula…"));
+        ui.centered_and_justified(|ui| ui.weak("Testing every formula…"));
         ui.request_repaint_after(std::time::Duration::from_millis(100));
     }
 
     /// Returns whether the scene uses this method. If its parameter has a value that was not tested, maps of the
     /// same method with another value count.
     fn is_used(&self, scene: &Scene, map: &Map) -> bool {
-        let Some(asked) = map.subject.method_in_use(&scene.render) else {
+        let Some(used_method) = map.subject.method_in_use(&scene.render) else {
             return map.is_default;
         };
-        let mut alike = self
+        let mut same_subject = self
             .maps
             .iter()
             .filter(|other| other.subject == map.subject);
-        let is_tried = alike.any(|other| other.method == asked);
+        let is_tested = same_subject.any(|other| other.method == used_method);
         let kind = |method: &str| method.split(':').next().map(str::to_owned);
-        asked == map.method || !is_tried && kind(&asked) == kind(&map.method)
+        used_method == map.method || !is_tested && kind(&used_method) == kind(&map.method)
     }
 
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {
@@ -135,14 +135,14 @@ impl Stability {
 /// Shows the colour scale.
 fn show_scale(ui: &mut Ui, width: f32) {
     let (row, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
-    let words = "Share of tries that fail";
+    let words = "Share of trials that fail";
     let small = TextStyle::Small.resolve(ui.style());
     let color = palette(ui.ctx()).muted;
     let at = row.left_center();
     ui.painter()
         .text(at, Align2::LEFT_CENTER, words, small, color);
-    let size = vec2(BAR, GRID);
-    let middle = row.right_center() - vec2(BAR / 2.0 + BESIDE, 0.0);
+    let size = vec2(BAR_WIDTH, GRID);
+    let middle = row.right_center() - vec2(BAR_WIDTH / 2.0 + LABEL_WIDTH, 0.0);
     ramp::show_bar(ui, Rect::from_center_size(middle, size));
 }
 

@@ -12,7 +12,7 @@ use crate::ui::theme::palette;
 
 /// Height of the zone at the upper edge of a group's row, as a fraction of the row, where a drop places things
 /// above the group; if the group is folded, also at the lower edge, for below.
-const EDGE: f32 = 0.3;
+const EDGE_SHARE: f32 = 0.3;
 
 /// Drag payload of a group's row: the indices of its members.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ enum DropMark {
 
 /// Makes the row of an item draggable and lets it take drops: another row is placed above it (upper half) or below
 /// it (lower half); a color pack on an object or a light is assigned to it.
-pub fn take_dropped(
+pub fn accept_drop(
     ui: &Ui,
     editor: &Editor,
     response: &Response,
@@ -43,16 +43,19 @@ pub fn take_dropped(
     let to = (item, is_after);
     let dragged = response.dnd_hover_payload::<Item>();
     let group = response.dnd_hover_payload::<DraggedGroup>();
-    let is_worn = |dragged: &Item| dragged.kind == ItemKind::Pack && item.kind != ItemKind::Pack;
-    let is_worn = dragged.as_ref().is_some_and(|dragged| is_worn(dragged));
+    let assigns_pack =
+        |dragged: &Item| dragged.kind == ItemKind::Pack && item.kind != ItemKind::Pack;
+    let assigns_pack = dragged
+        .as_ref()
+        .is_some_and(|dragged| assigns_pack(dragged));
     let edit = match dragged {
-        Some(dragged) if is_worn => dressed(editor, *dragged, item),
+        Some(dragged) if assigns_pack => dressed(editor, *dragged, item),
         // While filtering, groups are not listed, so nothing leaves its group or enters another.
         Some(dragged) if is_filtered && !are_in_one_group(editor, *dragged, item) => None,
         Some(dragged) => put_beside(editor, *dragged, to),
         None => group.and_then(|group| put_group_beside(editor, &group, to)),
     };
-    let mark = if is_worn {
+    let mark = if assigns_pack {
         DropMark::Frame
     } else {
         DropMark::Line(is_after)
@@ -62,7 +65,7 @@ pub fn take_dropped(
 
 /// Lets the row of a group take drops: objects become members, or are placed above the group if dropped on the
 /// row's upper edge; another group is placed above it. If the group is folded, both can also be placed below.
-pub fn take_dropped_on_group(
+pub fn accept_drop_on_group(
     ui: &Ui,
     editor: &Editor,
     response: &Response,
@@ -75,7 +78,7 @@ pub fn take_dropped_on_group(
     let Some(share) = share_of_row(ui, response) else {
         return;
     };
-    let beside = |objects: Vec<usize>, is_after: bool, to: Option<String>| {
+    let arranged_beside = |objects: Vec<usize>, is_after: bool, to: Option<String>| {
         let moved: HashSet<&usize> = objects.iter().collect();
         let mut others = group.members.iter().filter(|it| !moved.contains(it));
         let anchor = if is_after {
@@ -86,16 +89,18 @@ pub fn take_dropped_on_group(
         let anchor = *anchor?;
         Some(arranged(objects, (anchor, is_after), to))
     };
-    let of_item = |item: Item| {
+    let item_drop = |item: Item| {
         let objects = dragged_objects(editor, item);
-        let alone = Some(String::new());
+        let no_group = Some(String::new());
         match item.kind {
-            ItemKind::Object if share < EDGE => {
-                (beside(objects, false, alone), DropMark::Line(false))
-            }
-            ItemKind::Object if is_folded && share > 1.0 - EDGE => {
-                (beside(objects, true, alone), DropMark::Line(true))
-            }
+            ItemKind::Object if share < EDGE_SHARE => (
+                arranged_beside(objects, false, no_group),
+                DropMark::Line(false),
+            ),
+            ItemKind::Object if is_folded && share > 1.0 - EDGE_SHARE => (
+                arranged_beside(objects, true, no_group),
+                DropMark::Line(true),
+            ),
             ItemKind::Object => {
                 let members: HashSet<&usize> = group.members.iter().collect();
                 let is_new = !objects.iter().all(|object| members.contains(object));
@@ -105,16 +110,16 @@ pub fn take_dropped_on_group(
             ItemKind::Light | ItemKind::Pack => (None, DropMark::Frame),
         }
     };
-    let of_group = |DraggedGroup(objects): &DraggedGroup| {
+    let group_drop = |DraggedGroup(objects): &DraggedGroup| {
         let is_after = share > 0.5;
-        let has_place = is_folded || !is_after;
-        let edit = has_place.then(|| beside(objects.clone(), is_after, None));
+        let is_allowed = is_folded || !is_after;
+        let edit = is_allowed.then(|| arranged_beside(objects.clone(), is_after, None));
         (edit.flatten(), DropMark::Line(is_after))
     };
     let item = response.dnd_hover_payload::<Item>();
     let other = response.dnd_hover_payload::<DraggedGroup>();
-    let dropped = item.map(|item| of_item(*item));
-    if let Some(dropped) = dropped.or_else(|| Some(of_group(&*other?))) {
+    let dropped = item.map(|item| item_drop(*item));
+    if let Some(dropped) = dropped.or_else(|| Some(group_drop(&*other?))) {
         drop_or_mark(ui, response.rect, dropped, out);
     }
 }
@@ -181,8 +186,8 @@ fn put_group_beside(
     (item, is_after): (Item, bool),
 ) -> Option<Edit> {
     let object = editor.scene().objects.get(item.index)?;
-    let has_place = item.kind == ItemKind::Object && object.group.is_empty();
-    has_place.then(|| arranged(objects.clone(), (item.index, is_after), None))
+    let is_allowed = item.kind == ItemKind::Object && object.group.is_empty();
+    is_allowed.then(|| arranged(objects.clone(), (item.index, is_after), None))
 }
 
 /// Vertical position of the pointer within a row, from 0 to less than 1 (adjacent rows share a border); `None` if
@@ -196,7 +201,7 @@ fn share_of_row(ui: &Ui, response: &Response) -> Option<f32> {
 
 /// Objects and groups dropped on the title below their list are moved to its end. While filtering, groups are not
 /// listed, and nothing is moved.
-pub fn take_dropped_at_end(
+pub fn accept_drop_at_end(
     ui: &Ui,
     editor: &Editor,
     (response, is_filtered): (&Response, bool),

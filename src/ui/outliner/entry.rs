@@ -14,7 +14,7 @@ use crate::ui::rows::to_bytes;
 use crate::ui::theme::{ROW, palette};
 
 /// Approximate number of letters that fit into a row; longer names have a tooltip.
-const LONG: usize = 18;
+const MAX_LETTERS: usize = 18;
 
 /// The colour of an object's or a color pack's matte reflection; the ambient colour if that is black.
 pub fn color_of(scene: &Scene, item: Item) -> Option<Color32> {
@@ -46,25 +46,25 @@ pub struct RowStyle {
 }
 
 /// Draws an entry that can be selected and dragged.
-pub fn entry(ui: &mut Ui, rect: Rect, look: RowStyle, name: &str) -> egui::Response {
+pub fn entry(ui: &mut Ui, rect: Rect, style: RowStyle, name: &str) -> egui::Response {
     let colors = palette(ui.ctx());
-    let color = if look.is_bright {
+    let color = if style.is_bright {
         colors.text
     } else {
         colors.muted
     };
     let texts = (
-        icons::text(look.icon).color(color),
+        icons::text(style.icon).color(color),
         // Long names are truncated, not the icon.
         egui::RichText::new(name).color(color).atom_shrink(true),
     );
-    let button = Button::selectable(look.is_selected, texts)
+    let button = Button::selectable(style.is_selected, texts)
         .right_text("")
         .truncate()
         .sense(Sense::click_and_drag())
         .min_size(rect.size());
     let shown = ui.put(rect, button).accessible_name(name);
-    if name.chars().count() > LONG {
+    if name.chars().count() > MAX_LETTERS {
         return shown.hint(name);
     }
     shown
@@ -95,9 +95,9 @@ pub fn eye_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
 /// The state of a rename field.
 pub enum Renaming {
     /// Editing goes on.
-    Going,
+    Ongoing,
     /// The user left it without a new name.
-    Left,
+    Cancelled,
     /// The new name.
     To(String),
 }
@@ -120,8 +120,8 @@ pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str)
             || (input.pointer.any_pressed() && !is_within)
     });
     if is_left {
-        Renaming::Left
+        Renaming::Cancelled
     } else {
-        Renaming::Going
+        Renaming::Ongoing
     }
 }

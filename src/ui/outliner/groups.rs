@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use egui::{Id, Rect, Response, Ui, UiBuilder};
 
-use super::drop::take_dropped_on_group;
+use super::drop::accept_drop_on_group;
 use super::entry::{Renaming, RowStyle, entry, eye_button, rename_field, row};
 use super::lines::Group;
 use crate::editor::{Action, Edit, Editor, Item, Selection};
@@ -43,20 +43,20 @@ impl GroupRows {
         let (rect, eye) = row(ui).split_left_right_at_x(ui.max_rect().right() - ROW - GRID / 2.0);
         let (fold, rect) = rect.split_left_right_at_x(rect.left() + ROW);
         let is_folded = self.fold_button(ui, fold, &group.name);
-        let look = RowStyle {
+        let style = RowStyle {
             icon: icons::GROUP,
             is_bright,
             is_selected,
         };
-        let response = entry(ui, rect, look, &group.name);
+        let response = entry(ui, rect, style, &group.name);
         if response.clicked() {
-            let selected = selected_with(ui, editor.selection(), group.items());
+            let selected = selection_after_click(ui, editor.selection(), group.items());
             out.actions.push(Action::Select(selected));
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());
         }
-        take_dropped_on_group(ui, editor, &response, (group, is_folded), out);
+        accept_drop_on_group(ui, editor, &response, (group, is_folded), out);
         response.context_menu(|ui| {
             if !is_selected {
                 out.select(Selection::all(group.items()));
@@ -108,8 +108,8 @@ impl GroupRows {
             let id = Id::unique(("name of the group", &group.name));
             let label = "new name of the group";
             match rename_field(ui, rect, (label, id), &group.name) {
-                Renaming::Going => return,
-                Renaming::Left => {}
+                Renaming::Ongoing => return,
+                Renaming::Cancelled => {}
                 Renaming::To(new) if new.trim().is_empty() => {}
                 Renaming::To(new) => {
                     let name = new.trim().to_owned();
@@ -117,8 +117,11 @@ impl GroupRows {
                     let mut groups = editor.scene().objects.iter().map(|object| &object.group);
                     let is_free = !groups.any(|other| *other == name);
                     if is_free {
-                        let own = self.folded.iter_mut().filter(|own| **own == group.name);
-                        own.for_each(|folded| folded.clone_from(&name));
+                        let renamed = self
+                            .folded
+                            .iter_mut()
+                            .filter(|folded| **folded == group.name);
+                        renamed.for_each(|folded| folded.clone_from(&name));
                     }
                     out.edit(Edit::RenameGroup(group.name.clone(), name));
                 }
@@ -129,7 +132,7 @@ impl GroupRows {
 }
 
 /// The selection after a click on a group: Shift adds it, Ctrl toggles it, a plain click selects it alone.
-fn selected_with(
+fn selection_after_click(
     ui: &Ui,
     selected: &Selection,
     members: impl ExactSizeIterator<Item = Item> + Clone,
@@ -138,9 +141,9 @@ fn selected_with(
     if !modifiers.shift && !modifiers.command {
         return Selection::all(members);
     }
-    let own: HashSet<Item> = members.clone().collect();
+    let member_set: HashSet<Item> = members.clone().collect();
     let others = selected.items().iter().copied();
-    let others = others.filter(|item| !own.contains(item));
+    let others = others.filter(|item| !member_set.contains(item));
     if !modifiers.shift && selected.has_all(members.clone()) {
         Selection::all(others)
     } else {

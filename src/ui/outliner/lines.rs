@@ -10,7 +10,7 @@ use crate::ui::icons;
 
 /// A line of the list.
 pub enum Line {
-    Single(&'static Selection, MaterialIcon, &'static str),
+    Fixed(&'static Selection, MaterialIcon, &'static str),
     Title(ItemKind, usize),
     /// A group of objects, by its index in [`Groups`].
     Group(usize),
@@ -63,32 +63,32 @@ impl Groups {
             objects: objects.clone(),
             ..Self::default()
         };
-        let mut places: HashMap<&str, usize> = HashMap::new();
-        let mut tops = Vec::new();
+        let mut group_indices: HashMap<&str, usize> = HashMap::new();
+        let mut top_rows = Vec::new();
         for (index, object) in objects.iter().enumerate() {
             if object.group.is_empty() {
-                tops.push(Row::Object(index, false));
+                top_rows.push(Row::Object(index, false));
                 continue;
             }
-            let place = *places.entry(&object.group).or_insert_with(|| {
-                tops.push(Row::Group(self.all.len()));
+            let group_index = *group_indices.entry(&object.group).or_insert_with(|| {
+                top_rows.push(Row::Group(self.all.len()));
                 self.all.push(Group {
                     name: object.group.clone(),
                     members: Vec::new(),
                 });
                 self.all.len() - 1
             });
-            self.all[place].members.push(index);
+            self.all[group_index].members.push(index);
         }
-        folded.retain(|name| places.contains_key(name.as_str()));
+        folded.retain(|name| group_indices.contains_key(name.as_str()));
         self.folded.clone_from(folded);
         if self.all.is_empty() {
             return;
         }
-        for top in tops {
-            self.rows.push(top);
-            if let Row::Group(place) = top {
-                let group = &self.all[place];
+        for row in top_rows {
+            self.rows.push(row);
+            if let Row::Group(group_index) = row {
+                let group = &self.all[group_index];
                 if !folded.contains(&group.name) {
                     let members = group.members.iter();
                     self.rows
@@ -113,7 +113,7 @@ pub enum Entries<'a> {
 pub struct Lines<'a>(pub [(ItemKind, usize, Entries<'a>); 3]);
 
 /// The rows above the lists of items.
-pub static SINGLES: [(Selection, MaterialIcon, &str); 3] = [
+pub static FIXED_ROWS: [(Selection, MaterialIcon, &str); 3] = [
     (Selection::Camera, icons::CAMERA, "Camera"),
     (Selection::World, icons::WORLD, "World"),
     (Selection::Render, icons::IMAGE, "Picture"),
@@ -152,23 +152,23 @@ impl Entries<'_> {
 impl Lines<'_> {
     pub fn len(&self) -> usize {
         let groups = self.0.iter().map(|(.., entries)| 1 + entries.len());
-        SINGLES.len() + groups.sum::<usize>()
+        FIXED_ROWS.len() + groups.sum::<usize>()
     }
 
     pub fn get(&self, index: usize) -> Option<Line> {
-        if let Some((selection, icon, name)) = SINGLES.get(index) {
-            return Some(Line::Single(selection, *icon, name));
+        if let Some((selection, icon, name)) = FIXED_ROWS.get(index) {
+            return Some(Line::Fixed(selection, *icon, name));
         }
-        let mut row = index - SINGLES.len();
+        let mut row = index - FIXED_ROWS.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
                 return Some(Line::Title(*kind, *count));
             }
             row -= 1;
             match entries.get(row) {
-                Some(Row::Group(place)) => return Some(Line::Group(place)),
-                Some(Row::Object(index, is_in)) => {
-                    return Some(Line::Entry(Item { kind: *kind, index }, is_in));
+                Some(Row::Group(group_index)) => return Some(Line::Group(group_index)),
+                Some(Row::Object(index, is_member)) => {
+                    return Some(Line::Entry(Item { kind: *kind, index }, is_member));
                 }
                 None => {}
             }
@@ -178,7 +178,7 @@ impl Lines<'_> {
     }
 
     /// The number of rows of a kind.
-    pub fn listed(&self, kind: ItemKind) -> usize {
+    pub fn row_count(&self, kind: ItemKind) -> usize {
         let mut groups = self.0.iter();
         let group = groups.find(|(group, ..)| *group == kind);
         group.map_or(0, |(.., entries)| entries.len())
@@ -186,7 +186,7 @@ impl Lines<'_> {
 
     /// The row of an item, if it is listed.
     pub fn row_of(&self, item: Item) -> Option<usize> {
-        let mut first = SINGLES.len();
+        let mut first = FIXED_ROWS.len();
         for (kind, _, entries) in &self.0 {
             first += 1;
             if *kind == item.kind {

@@ -16,7 +16,7 @@ use egui::{
     UiBuilder, pos2, vec2,
 };
 
-use self::drop::{take_dropped, take_dropped_at_end};
+use self::drop::{accept_drop, accept_drop_at_end};
 use self::entry::{Renaming, RowStyle, color_of, entry, eye, rename_field, row};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
@@ -30,21 +30,21 @@ use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
 /// Indentation of group members: they start at the group's name, which follows an arrow.
-const MEMBER: f32 = ROW + 2.0 * GRID;
+const MEMBER_INDENT: f32 = ROW + 2.0 * GRID;
 
 /// The state of the panel between frames.
 #[derive(Debug, Default)]
 pub struct Outliner {
     filter: String,
     /// The document shown last (see [`Editor::documents`]), and the item selected in it.
-    listed: (u64, Option<Item>),
+    last_shown: (u64, Option<Item>),
     /// Scroll offset and visible height of the list, in points.
     scrolled: (f32, f32),
     folded: Vec<ItemKind>,
     /// The item that is being renamed, and its name when that began.
     renaming: Option<(Item, String)>,
     /// Whether to scroll to the selected item even if the selection has not changed.
-    reveals: bool,
+    reveals_selection: bool,
     groups: Groups,
     group_rows: GroupRows,
     walk: Walk,
@@ -61,7 +61,7 @@ impl Outliner {
                 .retain(|group| *group != object.group);
         }
         self.renaming = item.name(scene).map(|name| (item, name.to_owned()));
-        self.reveals = true;
+        self.reveals_selection = true;
     }
 
     /// Starts renaming a group in its row.
@@ -69,7 +69,7 @@ impl Outliner {
         self.filter.clear();
         self.folded.retain(|kind| *kind != ItemKind::Object);
         self.group_rows.renaming = group;
-        self.reveals = true;
+        self.reveals_selection = true;
     }
 
     fn is_filtered(&self) -> bool {
@@ -97,7 +97,7 @@ impl Outliner {
         out: &mut UiRequests,
     ) {
         ui.add_space(GRID / 2.0);
-        if self.listed.0 != editor.documents() {
+        if self.last_shown.0 != editor.documents() {
             // Filter and renaming belong to the previous document.
             self.clear_filter();
             self.renaming = None;
@@ -123,11 +123,11 @@ impl Outliner {
         });
         ui.spacing_mut().item_spacing.y = 0.0;
         let mut area = ScrollArea::vertical().auto_shrink(false);
-        let revealed = walked.or_else(|| self.revealed(editor, listed));
-        if let Some(to) = revealed.and_then(|row| self.to_reveal(row)) {
+        let row_to_reveal = walked.or_else(|| self.row_to_reveal(editor, listed));
+        if let Some(to) = row_to_reveal.and_then(|row| self.reveal_offset(row)) {
             area = area.vertical_scroll_offset(to);
         }
-        self.listed = (editor.documents(), editor.selection().item());
+        self.last_shown = (editor.documents(), editor.selection().item());
         let mut rows = 0..0;
         let shown = area.show_rows(ui, ROW, lines.len(), |ui, range| {
             rows = range.clone();
@@ -136,7 +136,9 @@ impl Outliner {
             }
         });
         // Renaming ends when its row is scrolled out of sight; otherwise it would take the keys once it is back.
-        if !std::mem::take(&mut self.reveals) && !rows.any(|row| self.is_renamed(listed, row)) {
+        if !std::mem::take(&mut self.reveals_selection)
+            && !rows.any(|row| self.is_renamed(listed, row))
+        {
             self.renaming = None;
             self.group_rows.renaming = None;
         }
@@ -150,8 +152,8 @@ impl Outliner {
             Some(Line::Entry(item, _)) => {
                 self.renaming.as_ref().is_some_and(|(own, _)| *own == item)
             }
-            Some(Line::Group(place)) => {
-                self.group_rows.renaming.as_ref() == Some(&listed.groups[place].name)
+            Some(Line::Group(group_index)) => {
+                self.group_rows.renaming.as_ref() == Some(&listed.groups[group_index].name)
             }
             _ => false,
         }
@@ -179,42 +181,42 @@ impl Outliner {
         out: &mut UiRequests,
     ) {
         match listed.lines.get(index) {
-            Some(Line::Single(selection, icon, name)) => {
+            Some(Line::Fixed(selection, icon, name)) => {
                 let rect = row(ui);
-                let look = RowStyle {
+                let style = RowStyle {
                     icon,
                     is_bright: true,
                     is_selected: editor.selection() == selection,
                 };
-                let response = entry(ui, rect, look, name);
-                self.walk.attend(ui, index, &response);
+                let response = entry(ui, rect, style, name);
+                self.walk.track_focus(ui, index, &response);
                 if response.clicked() {
                     out.select(selection.clone());
                 }
             }
             Some(Line::Title(kind, count)) => {
-                let some = listed.lines.listed(kind);
+                let listed_count = listed.lines.row_count(kind);
                 let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                 let words = if is_all {
                     count.to_string()
                 } else {
-                    format!("{some} of {count}")
+                    format!("{listed_count} of {count}")
                 };
                 self.title(ui, editor, (kind, &words), out);
             }
-            Some(Line::Group(place)) => {
-                let group = &listed.groups[place];
+            Some(Line::Group(group_index)) => {
+                let group = &listed.groups[group_index];
                 let is_marked = |member| listed.is_marked(editor, member);
                 let is_selected = group.items().all(is_marked);
                 let row = (group, is_selected);
                 if let Some(response) = self.group_rows.show(ui, editor, row, out) {
-                    self.walk.attend(ui, index, &response);
+                    self.walk.track_focus(ui, index, &response);
                 }
             }
-            Some(Line::Entry(item, is_in)) => {
-                let entry = (listed, item, is_in);
+            Some(Line::Entry(item, is_in_group)) => {
+                let entry = (listed, item, is_in_group);
                 if let Some(response) = self.item(ui, editor, entry, out) {
-                    self.walk.attend(ui, index, &response);
+                    self.walk.track_focus(ui, index, &response);
                 }
             }
             None => {}
@@ -222,16 +224,16 @@ impl Outliner {
     }
 
     /// The row of the item that was just selected elsewhere.
-    fn revealed(&self, editor: &Editor, listed: Listed) -> Option<usize> {
+    fn row_to_reveal(&self, editor: &Editor, listed: Listed) -> Option<usize> {
         let item = editor.selection().item();
-        let is_new = self.reveals || self.listed != (editor.documents(), item);
+        let is_new = self.reveals_selection || self.last_shown != (editor.documents(), item);
         (is_new && item.is_some())
             .then(|| listed.row_of(editor))
             .flatten()
     }
 
     /// The scroll offset that makes a row visible; `None` if it already is.
-    fn to_reveal(&self, row: usize) -> Option<f32> {
+    fn reveal_offset(&self, row: usize) -> Option<f32> {
         let top = row as f32 * ROW;
         let (from, height) = self.scrolled;
         let is_seen = top >= from && top + ROW <= from + height;
@@ -318,7 +320,7 @@ impl Outliner {
             colors.muted,
         );
         if kind == ItemKind::Pack {
-            take_dropped_at_end(ui, editor, (&response, self.is_filtered()), out);
+            accept_drop_at_end(ui, editor, (&response, self.is_filtered()), out);
         }
         if response.clicked() {
             if is_folded {
@@ -349,15 +351,15 @@ impl Outliner {
         let is_selected = listed.is_marked(editor, item);
         let (mut rect, mut eye_rect) = (row(ui), Rect::NOTHING);
         if is_in_group {
-            rect.min.x += MEMBER;
+            rect.min.x += MEMBER_INDENT;
         }
         if visible.is_some() {
             (rect, eye_rect) = rect.split_left_right_at_x(rect.right() - ROW - GRID / 2.0);
         }
         if let Some(color) = color_of(scene, item) {
-            let place;
-            (rect, place) = rect.split_left_right_at_x(rect.right() - 2.0 * GRID);
-            let square = Rect::from_center_size(place.center(), vec2(GRID, GRID) * 1.25);
+            let swatch_area;
+            (rect, swatch_area) = rect.split_left_right_at_x(rect.right() - 2.0 * GRID);
+            let square = Rect::from_center_size(swatch_area.center(), vec2(GRID, GRID) * 1.25);
             let line = Stroke::new(1.0, palette(ui.ctx()).line);
             ui.painter()
                 .rect(square, 2, color, line, StrokeKind::Outside);
@@ -373,12 +375,12 @@ impl Outliner {
             name,
         );
         if response.clicked() {
-            select_clicked(ui, editor, (listed, item), out);
+            select_on_click(ui, editor, (listed, item), out);
         }
         if response.double_clicked() {
             self.renaming = Some((item, name.to_owned()));
         }
-        take_dropped(ui, editor, &response, (item, self.is_filtered()), out);
+        accept_drop(ui, editor, &response, (item, self.is_filtered()), out);
         response.context_menu(|ui| {
             if !is_selected {
                 out.select(item);
@@ -404,7 +406,7 @@ impl Outliner {
     ) {
         let mut rect = row(ui);
         if is_in_group {
-            rect.min.x += MEMBER;
+            rect.min.x += MEMBER_INDENT;
         }
         let name = item.name(scene).unwrap_or_default();
         ui.scope_builder(
@@ -416,8 +418,8 @@ impl Outliner {
                 ui.label(icons::text(icons::of_item(scene, item)));
                 let id = Id::unique(("rename", item));
                 match rename_field(ui, rect, ("new name", id), name) {
-                    Renaming::Going => return,
-                    Renaming::Left => {}
+                    Renaming::Ongoing => return,
+                    Renaming::Cancelled => {}
                     Renaming::To(new) => out.edit(Edit::Rename(item, new)),
                 }
                 self.renaming = None;
@@ -428,7 +430,7 @@ impl Outliner {
 
 /// Handles a click on an item: it is selected alone; with Ctrl, toggled; with Shift, everything between the last
 /// selected item and this one is added, if both are in the same list.
-fn select_clicked(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out: &mut UiRequests) {
+fn select_on_click(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out: &mut UiRequests) {
     let modifiers = ui.input(|input| input.modifiers);
     let selected = editor.selection();
     let selected = if modifiers.shift {

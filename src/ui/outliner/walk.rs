@@ -2,7 +2,7 @@
 
 use egui::{Event, EventFilter, Key, Modifiers, Response, Ui};
 
-use super::lines::{Group, Line, Lines, SINGLES};
+use super::lines::{FIXED_ROWS, Group, Line, Lines};
 use crate::editor::{Action, Editor, Item, ItemKind, Selection};
 use crate::scene::Scene;
 
@@ -10,7 +10,7 @@ use crate::scene::Scene;
 #[derive(Debug, Default)]
 pub struct Walk {
     /// The last frame in which the pointer was over the list while no widget had the focus.
-    over_in: u64,
+    hovered_in_frame: u64,
     /// Whether the key that is held was first pressed for the list.
     is_held: bool,
     /// The row that has the focus.
@@ -36,7 +36,7 @@ impl Walk {
     /// Returns whether arrow keys held in this frame are meant for the list.
     pub fn has_keys(&self, ui: &Ui) -> bool {
         let is_down = |key: Key| ui.input(|input| input.key_down(key));
-        self.over_in == ui.ctx().cumulative_frame_nr()
+        self.hovered_in_frame == ui.ctx().cumulative_frame_nr()
             && (is_down(Key::ArrowUp) || is_down(Key::ArrowDown))
     }
 
@@ -55,7 +55,7 @@ impl Walk {
             return None;
         }
         if is_over {
-            self.over_in = ui.ctx().cumulative_frame_nr();
+            self.hovered_in_frame = ui.ctx().cumulative_frame_nr();
         }
         let is_down = self.pressed(ui)?;
         let last = self.last.filter(|row| listed.is_selected(editor, *row));
@@ -69,7 +69,7 @@ impl Walk {
                 (Some(row), true) => row + 1,
                 (Some(row), false) => row.checked_sub(1)?,
             };
-            if let Some(selected) = listed.selects(next) {
+            if let Some(selected) = listed.selection_of(next) {
                 break (next, selected);
             }
             row = (next < count).then_some(Some(next))?;
@@ -103,7 +103,7 @@ impl Walk {
     }
 
     /// Notes whether a row has the focus, and passes the focus to the row that was moved to.
-    pub fn attend(&mut self, ui: &Ui, row: usize, response: &Response) {
+    pub fn track_focus(&mut self, ui: &Ui, row: usize, response: &Response) {
         if self.goal == Some(row) {
             response.request_focus();
         }
@@ -131,8 +131,8 @@ impl Listed<'_> {
     /// the group is folded.
     pub fn row_of(&self, editor: &Editor) -> Option<usize> {
         let Some(item) = editor.selection().item() else {
-            let mut singles = SINGLES.iter();
-            return singles.position(|(single, ..)| single == editor.selection());
+            let mut fixed_rows = FIXED_ROWS.iter();
+            return fixed_rows.position(|(fixed, ..)| fixed == editor.selection());
         };
         match editor.selection().group(editor.scene()) {
             Some(group) => self.row_of_group(group),
@@ -172,9 +172,9 @@ impl Listed<'_> {
     }
 
     /// The selection of a row; `None` if the row cannot be selected.
-    fn selects(&self, row: usize) -> Option<Selection> {
+    fn selection_of(&self, row: usize) -> Option<Selection> {
         Some(match self.lines.get(row)? {
-            Line::Single(selection, ..) => selection.clone(),
+            Line::Fixed(selection, ..) => selection.clone(),
             Line::Entry(item, _) => Selection::all([item]),
             Line::Group(index) => Selection::all(self.groups[index].items()),
             Line::Title(..) => return None,
@@ -183,6 +183,6 @@ impl Listed<'_> {
 
     /// Returns whether a row's items are the selection.
     fn is_selected(&self, editor: &Editor, row: usize) -> bool {
-        self.selects(row).as_ref() == Some(editor.selection())
+        self.selection_of(row).as_ref() == Some(editor.selection())
     }
 }

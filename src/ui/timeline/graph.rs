@@ -12,28 +12,28 @@ use crate::ui::theme::{GRAPH, palette};
 use crate::words::counted;
 
 /// Maximum number of steps; longer flights are sampled more coarsely.
-const MOST: u64 = 4000;
+const MAX_STEPS: u64 = 4000;
 /// A step is a jump if it exceeds the mean and a neighbouring step by this factor.
-const JUMP: f64 = 4.0;
+const JUMP_FACTOR: f64 = 4.0;
 /// Turns below this are no jumps, in degrees per step.
-const SEEN: f64 = 0.25;
+const MIN_JUMP_TURN: f64 = 0.25;
 /// Steps below this fraction of the largest coordinate are rounding errors.
 const NOISE: f64 = 1e-9;
 /// Turns below this are rounding errors, in degrees per step.
 const NOISE_TURN: f64 = 1e-6;
 /// Faster turns are hard to watch, in degrees per second.
-const DIZZY: f64 = 120.0;
+const MAX_WATCHABLE_TURN: f64 = 120.0;
 
 /// The curves of the current flight.
 #[derive(Default)]
 pub struct Graph {
     made_for: Option<(Vec<Key<Camera>>, f64)>,
-    steps: Vec<PaceStep>,
+    steps: Vec<MotionStep>,
 }
 
 /// The motion from one sampled frame to the next.
 #[derive(Clone, Copy, Debug)]
-struct PaceStep {
+struct MotionStep {
     time: f64,
     /// World units per second.
     speed: f64,
@@ -48,10 +48,10 @@ impl Graph {
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor) {
         self.update(editor);
         let colors = palette(ui.ctx());
-        let highest = |of: fn(&PaceStep) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
+        let highest = |of: fn(&MotionStep) -> f64| self.steps.iter().map(of).fold(0.0, f64::max);
         let (fastest, sharpest) = (highest(|step| step.speed), highest(|step| step.turn));
-        let line = |of: fn(&PaceStep) -> f64, most: f64| {
-            let at = |step: &PaceStep| [step.time, if most > 0.0 { of(step) / most } else { 0.0 }];
+        let line = |of: fn(&MotionStep) -> f64, max: f64| {
+            let at = |step: &MotionStep| [step.time, if max > 0.0 { of(step) / max } else { 0.0 }];
             self.steps.iter().map(at).collect::<Vec<[f64; 2]>>()
         };
         let rough = self.steps.iter().filter(|step| step.is_rough).count();
@@ -65,7 +65,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
                         let text = egui::RichText::new(counted(rough, "jump")).color(colors.accent);
-                        ui.small(text).hint("Frames where speed or turn changes abruptly, or turns by more than 120° a second");
+                        ui.small(text).hint("Frames where speed or turn rate changes abruptly, or the view turns by more than 120° a second");
                     }
                 });
             });
@@ -90,7 +90,7 @@ impl Graph {
                     plot.line(Line::new("speed", speed).color(colors.curve));
                     let turn = line(|step| step.turn, sharpest);
                     plot.line(Line::new("turn", turn).color(colors.muted));
-                    let at = |step: &PaceStep| [step.time, 1.0];
+                    let at = |step: &MotionStep| [step.time, 1.0];
                     let rough = self.steps.iter().filter(|step| step.is_rough);
                     let rough: Vec<[f64; 2]> = rough.map(at).collect();
                     let marks = Points::new("jump", PlotPoints::from(rough));
@@ -106,11 +106,11 @@ impl Graph {
         let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) =
             hover;
         let PlotPoint { x, .. } = *position;
-        let near = self.steps.iter();
-        let near = near.min_by(|a, b| (a.time - x).abs().total_cmp(&(b.time - x).abs()))?;
+        let nearest = self.steps.iter();
+        let nearest = nearest.min_by(|a, b| (a.time - x).abs().total_cmp(&(b.time - x).abs()))?;
         Some(format!(
             "{:.2} s: {:.1}/s, {:.0}°/s",
-            near.time, near.speed, near.turn
+            nearest.time, nearest.speed, nearest.turn
         ))
     }
 
@@ -129,9 +129,9 @@ impl Graph {
     }
 }
 
-fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
+fn steps(animation: &Animation, path: &CameraPath) -> Vec<MotionStep> {
     let (count, fps) = (animation.frame_count(), animation.frames_per_second);
-    let stride = count.div_ceil(MOST).max(1);
+    let stride = count.div_ceil(MAX_STEPS).max(1);
     let frames: Vec<u64> = (1..=count).step_by(stride as usize).collect();
     let motion = |pair: &[u64]| {
         let [from, to] = [pair[0], pair[1]].map(|frame| path.at(animation.time_of(frame)));
@@ -140,15 +140,15 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
             .map_or(still, |(from, to)| motion_between(&from, &to))
     };
     let motions: Vec<CameraChange> = frames.windows(2).map(motion).collect();
-    let each = motions.len().max(1) as f64;
-    let mean = |of: fn(&CameraChange) -> f64| motions.iter().map(of).sum::<f64>() / each;
+    let motion_count = motions.len().max(1) as f64;
+    let mean = |of: fn(&CameraChange) -> f64| motions.iter().map(of).sum::<f64>() / motion_count;
     let (mean_distance, mean_turn) = (mean(|m| m.distance), mean(|m| m.turn));
     // Motion caused by rounding alone does not count.
-    let far = animation
+    let reaches = animation
         .keys
         .iter()
         .map(|key| key.value.position.abs().max_element());
-    let noise = far.fold(0.0, f64::max) * NOISE;
+    let noise = reaches.fold(0.0, f64::max) * NOISE;
     let per_second = fps / stride as f64;
     let pairs = animation.keys.windows(2);
     let cuts = pairs.filter(|pair| pair[0].interpolation == Interpolation::Hold);
@@ -159,25 +159,28 @@ fn steps(animation: &Animation, path: &CameraPath) -> Vec<PaceStep> {
         let is_cut = cuts
             .get(earlier)
             .is_some_and(|cut| *cut <= time + SAME_TIME);
-        let beside = [index.checked_sub(1), Some(index + 1)];
+        let neighbours = [index.checked_sub(1), Some(index + 1)];
         let is_jump = |of: fn(&CameraChange) -> f64, mean: f64| {
-            let here = of(&motions[index]);
-            let beside = beside
+            let value = of(&motions[index]);
+            let neighbours = neighbours
                 .into_iter()
                 .flatten()
-                .filter_map(|near| motions.get(near));
-            here > JUMP * mean && beside.map(of).any(|near| here > JUMP * near)
+                .filter_map(|neighbour| motions.get(neighbour));
+            value > JUMP_FACTOR * mean
+                && neighbours
+                    .map(of)
+                    .any(|neighbour| value > JUMP_FACTOR * neighbour)
         };
         let CameraChange { distance, turn, .. } = motions[index];
         let distance = if distance > noise { distance } else { 0.0 };
         let turn = if turn > NOISE_TURN { turn } else { 0.0 };
         let is_jump = is_jump(|m| m.distance, mean_distance.max(noise))
-            || is_jump(|m| m.turn, mean_turn.max(SEEN / JUMP));
-        PaceStep {
+            || is_jump(|m| m.turn, mean_turn.max(MIN_JUMP_TURN / JUMP_FACTOR));
+        MotionStep {
             time,
             speed: if is_cut { 0.0 } else { distance * per_second },
             turn: if is_cut { 0.0 } else { turn * per_second },
-            is_rough: !is_cut && (is_jump || turn * per_second > DIZZY),
+            is_rough: !is_cut && (is_jump || turn * per_second > MAX_WATCHABLE_TURN),
         }
     };
     (0..motions.len()).map(step).collect()

@@ -4,27 +4,30 @@ use egui::Ui;
 
 use crate::editor::{Edit, Editor};
 use crate::scene::{Easing, KeyPlace};
-use crate::ui::inspector::key_ways;
+use crate::ui::inspector::interpolations_for;
 use crate::ui::requests::UiRequests;
 
-/// Shows entries for way, pace and deletion of the selected keys, one of which is at `place`.
+/// Shows entries for interpolation, easing and deletion of the selected keys, one of which is at `place`.
 pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
-    let Some((_, (own_way, own_pace))) = animation.at_place(place) else {
+    let Some((_, (current_interpolation, current_easing))) = animation.at_place(place) else {
         return;
     };
-    for way in key_ways(editor, places, own_way) {
-        if ui.radio(own_way == way, way.name()).clicked() {
-            let changed = animation.with_pace(places, |(each, _)| *each = way);
-            out.edit(Edit::animation(changed, "Key: way"));
+    for interpolation in interpolations_for(editor, places, current_interpolation) {
+        if ui
+            .radio(current_interpolation == interpolation, interpolation.name())
+            .clicked()
+        {
+            let changed = animation.with_pace(places, |(each, _)| *each = interpolation);
+            out.edit(Edit::animation(changed, "Key: interpolation"));
         }
     }
     ui.separator();
-    for pace in Easing::ALL {
-        if ui.radio(own_pace == pace, pace.name()).clicked() {
-            let changed = animation.with_pace(places, |(_, each)| *each = pace);
-            out.edit(Edit::animation(changed, "Key: pace"));
+    for easing in Easing::ALL {
+        if ui.radio(current_easing == easing, easing.name()).clicked() {
+            let changed = animation.with_pace(places, |(_, each)| *each = easing);
+            out.edit(Edit::animation(changed, "Key: easing"));
         }
     }
     ui.separator();

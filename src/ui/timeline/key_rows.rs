@@ -7,24 +7,24 @@ use egui::{PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 use super::key_menu::menu;
 use super::ruler::playhead;
 use super::scale::Scale;
-use super::strip::{KEY, band, diamond, held, label, picked};
+use super::strip::{KEY_HALF_WIDTH, band, diamond, dragged_keys, label, selection_after_click};
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
 use crate::ui::hint::Hinted as _;
-use crate::ui::inspector::told_of_replaced;
+use crate::ui::inspector::replaced_keys_message;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, TRACK, palette};
 
 /// Keys nearer to the previous one than this, in points, are not shown.
-const APART: f32 = 2.0;
+const MIN_KEY_DISTANCE: f32 = 2.0;
 /// Maximum number of selected keys that are shown regardless.
-const FEW: usize = 64;
+const MAX_ALWAYS_SHOWN: usize = 64;
 
 /// The pointer gesture in progress on the rows.
 #[derive(Default)]
 pub struct KeyRows {
     drag: Option<KeyDrag>,
-    frame: Option<Marquee>,
+    marquee: Option<Marquee>,
 }
 
 /// A selection rectangle that is being drawn.
@@ -46,13 +46,13 @@ struct KeyDrag {
     /// The dragged keys in that animation.
     places: Keys,
     /// Original time of the key under the pointer.
-    from: f64,
+    grabbed_time: f64,
     are_copies: bool,
 }
 
 impl KeyDrag {
     /// The message at the end of the drag if other keys were replaced.
-    fn told(&self, now: &Animation) -> Option<String> {
+    fn message(&self, now: &Animation) -> Option<String> {
         let copies = if self.are_copies {
             self.places.len()
         } else {
@@ -60,19 +60,19 @@ impl KeyDrag {
         };
         let before = self.before.places().len() + copies;
         let replaced = before.saturating_sub(now.places().len());
-        told_of_replaced(replaced).filter(|_| *now != *self.before)
+        replaced_keys_message(replaced).filter(|_| *now != *self.before)
     }
 }
 
 impl KeyRows {
     /// Returns whether keys are being dragged or a marquee is being drawn.
     pub fn is_busy(&self) -> bool {
-        self.drag.is_some() || self.frame.is_some()
+        self.drag.is_some() || self.marquee.is_some()
     }
 
     /// Cancels the gesture in progress.
-    pub fn give_up(&mut self, editor: &Editor, out: &mut UiRequests) {
-        if let Some(Marquee { before, .. }) = self.frame.take()
+    pub fn cancel(&mut self, editor: &Editor, out: &mut UiRequests) {
+        if let Some(Marquee { before, .. }) = self.marquee.take()
             && before != *editor.selection()
         {
             out.select(before);
@@ -84,45 +84,51 @@ impl KeyRows {
 
     /// Shows all rows. Click, Shift-click, drag, Ctrl-drag, marquee and context menu work on them.
     pub fn show(&mut self, ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
-        if let Some(frame) = &mut self.frame {
-            frame.within.clear();
+        if let Some(marquee) = &mut self.marquee {
+            marquee.within.clear();
         }
         let animation = &editor.scene().animation;
         if !animation.keys.is_empty() {
             self.row(ui, (scale, editor), (None, &animation.keys), out);
         }
         // Of tens of thousands of rows, only the visible ones are laid out.
-        let pitch = TRACK + ui.spacing().item_spacing.y;
-        let (top, sight) = (ui.cursor().top(), ui.clip_rect());
-        let row_at = |y: f32| ((y - top) / pitch).max(0.0) as usize;
+        let row_height = TRACK + ui.spacing().item_spacing.y;
+        let (top, visible) = (ui.cursor().top(), ui.clip_rect());
+        let row_at = |y: f32| ((y - top) / row_height).max(0.0) as usize;
         let count = animation.tracks.len();
-        let first = row_at(sight.top()).min(count);
-        let last = (row_at(sight.bottom()) + 1).clamp(first, count);
+        let first = row_at(visible.top()).min(count);
+        let last = (row_at(visible.bottom()) + 1).clamp(first, count);
         let skip = |ui: &mut Ui, rows: usize| {
             if rows > 0 {
-                ui.add_space(rows as f32 * pitch);
+                ui.add_space(rows as f32 * row_height);
             }
         };
         skip(ui, first);
-        for (track, own) in (first..).zip(&animation.tracks[first..last]) {
-            self.row(ui, (scale, editor), (Some(track), &own.keys), out);
+        for (track, value_track) in (first..).zip(&animation.tracks[first..last]) {
+            self.row(ui, (scale, editor), (Some(track), &value_track.keys), out);
         }
         skip(ui, count - last);
         self.drag_to_pointer(ui, (scale, editor), out);
     }
 
     /// Shows the space below the rows, where a marquee can start as well, and the marquee.
-    pub fn show_rest(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
+    pub fn show_space_below(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         let room = ui.available_rect_before_wrap();
         if room.is_positive() {
             let response = ui.allocate_rect(room, Sense::click_and_drag());
-            self.press(ui, &response, editor, out);
+            self.press_on_empty(ui, &response, editor, out);
         }
-        self.show_frame(ui, editor, out);
+        self.show_marquee(ui, editor, out);
     }
 
     /// Handles a press where no key is.
-    fn press(&mut self, ui: &Ui, response: &Response, editor: &Editor, out: &mut UiRequests) {
+    fn press_on_empty(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        editor: &Editor,
+        out: &mut UiRequests,
+    ) {
         let selected = editor.selection().keys();
         // If no keys are selected, the selection is something else and stays.
         if response.clicked() && !selected.is_empty() {
@@ -131,7 +137,7 @@ impl KeyRows {
         if response.drag_started_by(PointerButton::Primary) {
             let (from, adds) =
                 ui.input(|input| (input.pointer.press_origin(), input.modifiers.shift));
-            self.frame = from.map(|from| Marquee {
+            self.marquee = from.map(|from| Marquee {
                 from,
                 before: editor.selection().clone(),
                 adds,
@@ -148,20 +154,20 @@ impl KeyRows {
         out: &mut UiRequests,
     ) {
         let (rect, response) = band(ui, scale, Sense::click_and_drag());
-        self.press(ui, &response, editor, out);
-        self.note_framed(ui, (scale, rect), (track, keys));
+        self.press_on_empty(ui, &response, editor, out);
+        self.collect_in_marquee(ui, (scale, rect), (track, keys));
         let tracks = &editor.scene().animation.tracks;
-        let of = track.and_then(|track| tracks.get(track));
-        let name = of.map_or("Camera".to_owned(), |track| track.target.name());
+        let value_track = track.and_then(|track| tracks.get(track));
+        let name = value_track.map_or("Camera".to_owned(), |track| track.target.name());
         label(ui, rect, &name);
         // A marquee can start on the label, too.
-        let room = Rect::from_min_max(
+        let label_area = Rect::from_min_max(
             pos2(ui.max_rect().left(), rect.top()),
             rect.left_bottom() - vec2(GRID, 0.0),
         );
         let id = ui.scope_id().with(("label", track));
-        let beside = ui.interact(room, id, Sense::click_and_drag());
-        if beside.clicked() {
+        let label_response = ui.interact(label_area, id, Sense::click_and_drag());
+        if label_response.clicked() {
             let mut all = Keys::new();
             if ui.input(|input| input.modifiers.shift) {
                 all.clone_from(editor.selection().keys());
@@ -169,19 +175,19 @@ impl KeyRows {
             all.extend((0..keys.len()).map(|index| KeyPlace { track, index }));
             out.select(all);
         } else {
-            self.press(ui, &beside, editor, out);
+            self.press_on_empty(ui, &label_response, editor, out);
         }
-        beside.hint(format!("{name}\nClick to select its keys"));
-        ways(ui, scale, rect, keys);
+        label_response.hint(format!("{name}\nClick to select its keys"));
+        draw_segments(ui, scale, rect, keys);
         playhead(ui, scale, rect, editor);
         // Of keys at the same place on the screen, only one is shown and can be grabbed: there may be a hundred
         // thousand.
         let selected = editor.selection().keys();
-        let are_few = selected.len() <= FEW;
+        let are_few = selected.len() <= MAX_ALWAYS_SHOWN;
         let mut last = f32::NEG_INFINITY;
         for (index, key) in keys.iter().enumerate() {
             let (x, place) = (scale.x(key.time), KeyPlace { track, index });
-            let is_apart = x - last >= APART || are_few && selected.contains(&place);
+            let is_apart = x - last >= MIN_KEY_DISTANCE || are_few && selected.contains(&place);
             if scale.shows(key.time) && is_apart {
                 last = x;
                 self.key(ui, (pos2(x, rect.center().y), editor), place, out);
@@ -197,34 +203,34 @@ impl KeyRows {
         out: &mut UiRequests,
     ) {
         let animation = &editor.scene().animation;
-        let Some((time, (way, _))) = animation.at_place(place) else {
+        let Some((time, (interpolation, _))) = animation.at_place(place) else {
             return;
         };
-        let near = Rect::from_center_size(at, vec2(2.0 * KEY + 2.0, TRACK));
+        let near = Rect::from_center_size(at, vec2(2.0 * KEY_HALF_WIDTH + 2.0, TRACK));
         let id = ui.scope_id().with(("key", place.track, place.index));
         let response = ui.interact(near, id, Sense::click_and_drag());
         let name = || animation.name_of(place);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name()));
-        let is_on = editor.selection().keys().contains(&place);
+        let is_selected = editor.selection().keys().contains(&place);
         let colors = palette(ui.ctx());
-        let fill = match (is_on, response.hovered()) {
+        let fill = match (is_selected, response.hovered()) {
             (true, _) => colors.accent,
             (false, true) => colors.text,
             (false, false) => colors.curve,
         };
-        diamond(ui, at, fill, way == Interpolation::Hold);
-        self.pick(&response, (place, time), editor, out);
+        diamond(ui, at, fill, interpolation == Interpolation::Hold);
+        self.handle_key(&response, (place, time), editor, out);
         response.context_menu(|ui| menu(ui, place, editor, out));
         if response.hovered() {
-            let (name, way) = (name(), way.name());
+            let (name, interpolation) = (name(), interpolation.name());
             response.hint(format!(
-                "{name}: {time:.3} s, {way}\nDrag to move, Ctrl-drag to copy, Shift-click for several"
+                "{name}: {time:.3} s, {interpolation}\nDrag to move, Ctrl-drag to copy, Shift-click for several"
             ));
         }
     }
 
     /// A click selects a key, a drag starts to move it.
-    fn pick(
+    fn handle_key(
         &mut self,
         response: &Response,
         (place, time): (KeyPlace, f64),
@@ -237,16 +243,16 @@ impl KeyRows {
             out.select(Keys::from([place]));
         }
         if response.clicked() {
-            out.select(picked(selected, place, modifiers.shift));
+            out.select(selection_after_click(selected, place, modifiers.shift));
         }
         if response.drag_started() {
-            let places = held(selected, place);
+            let places = dragged_keys(selected, place);
             // Earlier edits are not part of the drag, and stay if it is cancelled.
             out.actions.push(Action::BeginGesture);
             self.drag = Some(KeyDrag {
                 before: Arc::clone(&editor.scene().animation),
                 places,
-                from: time,
+                grabbed_time: time,
                 are_copies: modifiers.command,
             });
         }
@@ -259,23 +265,25 @@ impl KeyRows {
         (scale, editor): (&Scale, &Editor),
         out: &mut UiRequests,
     ) {
-        let Some(held) = &self.drag else { return };
+        let Some(drag) = &self.drag else { return };
         let (is_down, at) =
             ui.input(|input| (input.pointer.primary_down(), input.pointer.latest_pos()));
         if !is_down {
-            let told = held.told(&editor.scene().animation);
-            out.actions.extend(told.map(Action::Tell));
+            let message = drag.message(&editor.scene().animation);
+            out.actions.extend(message.map(Action::Tell));
             self.drag = None;
             return;
         }
         // Nothing moves while the pointer is outside the window.
         let Some(at) = at else { return };
-        let before = &held.before;
+        let before = &drag.before;
         let to = before.time_of(before.nearest_frame(scale.time(at.x)));
-        let later = to - held.from;
-        let (moved, new) = held.before.with_moved(&held.places, later, held.are_copies);
+        let offset = to - drag.grabbed_time;
+        let (moved, new) = drag
+            .before
+            .with_moved(&drag.places, offset, drag.are_copies);
         if moved != *editor.scene().animation {
-            let label = if held.are_copies {
+            let label = if drag.are_copies {
                 "Copy keys"
             } else {
                 "Move keys"
@@ -288,57 +296,59 @@ impl KeyRows {
     }
 
     /// Collects the keys of a visible row that are within the marquee.
-    fn note_framed<T>(
+    fn collect_in_marquee<T>(
         &mut self,
         ui: &Ui,
         (scale, rect): (&Scale, Rect),
         (track, keys): (Option<usize>, &[Key<T>]),
     ) {
-        let Some(frame) = &mut self.frame else { return };
-        let Some(around) = frame.around(ui) else {
+        let Some(marquee) = &mut self.marquee else {
             return;
         };
-        let is_crossed = around.y_range().intersects(rect.y_range());
+        let Some(bounds) = marquee.rect(ui) else {
+            return;
+        };
+        let is_crossed = bounds.y_range().intersects(rect.y_range());
         if !is_crossed || !ui.is_rect_visible(rect) {
             return;
         }
-        let is_within = |time: f64| scale.shows(time) && around.x_range().contains(scale.x(time));
+        let is_within = |time: f64| scale.shows(time) && bounds.x_range().contains(scale.x(time));
         let keys = keys.iter().enumerate();
         let within = keys.filter(|(_, key)| is_within(key.time));
         let places = within.map(|(index, _)| KeyPlace { track, index });
-        frame.within.extend(places);
+        marquee.within.extend(places);
     }
 
     /// Selects the keys within the marquee, and draws it.
-    fn show_frame(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
-        let Some(frame) = &self.frame else { return };
-        let mut places = frame.within.clone();
-        if frame.adds {
-            places.extend(frame.before.keys());
+    fn show_marquee(&mut self, ui: &Ui, editor: &Editor, out: &mut UiRequests) {
+        let Some(marquee) = &self.marquee else { return };
+        let mut places = marquee.within.clone();
+        if marquee.adds {
+            places.extend(marquee.before.keys());
         }
         if places != *editor.selection().keys() {
             out.select(places);
         }
-        if let Some(around) = frame.around(ui) {
+        if let Some(bounds) = marquee.rect(ui) {
             let fill = palette(ui.ctx()).accent.gamma_multiply(0.2);
-            ui.painter().rect_filled(around, 0, fill);
+            ui.painter().rect_filled(bounds, 0, fill);
         }
         if !ui.input(|input| input.pointer.primary_down()) {
-            self.frame = None;
+            self.marquee = None;
         }
     }
 }
 
 impl Marquee {
     /// The rectangle from its start to the pointer.
-    fn around(&self, ui: &Ui) -> Option<Rect> {
+    fn rect(&self, ui: &Ui) -> Option<Rect> {
         let to = ui.input(|input| input.pointer.latest_pos())?;
         Some(Rect::from_two_pos(self.from, to))
     }
 }
 
 /// Draws lines between keys: thin for linear interpolation, thick for curves, none if the value is held.
-fn ways<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
+fn draw_segments<T>(ui: &Ui, scale: &Scale, rect: Rect, keys: &[Key<T>]) {
     let color = palette(ui.ctx()).line;
     for pair in keys.windows(2) {
         let width = match pair[0].interpolation {

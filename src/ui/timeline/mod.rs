@@ -39,11 +39,11 @@ use crate::scene::Animation;
 use crate::ui::hint::Hinted as _;
 
 /// Minimum length of the time axis, in seconds.
-const LEAST: f64 = 4.0;
+const MIN_SECONDS: f64 = 4.0;
 /// Space after the last key, as a fraction of the time before it.
-const BEHIND: f64 = 0.08;
+const MARGIN_SHARE: f64 = 0.08;
 /// Maximum length when zoomed out, as a multiple of the default, to leave room for further keys.
-const ROOM: f64 = 4.0;
+const MAX_ZOOM_OUT: f64 = 4.0;
 /// Width of the track labels, as a fraction of the panel's.
 const LABEL_SHARE: f32 = 0.14;
 
@@ -54,7 +54,7 @@ pub struct TimelinePanel {
     /// First and last time shown; fixed while something is dragged.
     span: (f64, f64),
     /// The section that the user zoomed to, if not everything is shown.
-    chosen: Option<(f64, f64)>,
+    zoomed: Option<(f64, f64)>,
     /// The document that this section belongs to.
     document: u64,
     /// The UI frame in which the pointer was last over the panel.
@@ -71,8 +71,8 @@ impl Default for TimelinePanel {
     fn default() -> Self {
         Self {
             shows_graph: true,
-            span: (0.0, LEAST),
-            chosen: None,
+            span: (0.0, MIN_SECONDS),
+            zoomed: None,
             document: 0,
             hovered_in: 0,
             frame: 0,
@@ -84,13 +84,13 @@ impl Default for TimelinePanel {
 }
 
 impl TimelinePanel {
-    /// Shows the panel. `per_second` is the number of pictures shown per second.
+    /// Shows the panel. `shown_fps` is the number of pictures shown per second.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         editor: &Editor,
         thumbs: &Thumbs,
-        per_second: f64,
+        shown_fps: f64,
         out: &mut UiRequests,
     ) {
         ui.add_space(GRID / 2.0);
@@ -104,7 +104,7 @@ impl TimelinePanel {
                 out.commands.push(Command::Lab);
             }
             ui.separator();
-            transport::show(ui, editor, per_second, &mut self.shows_graph, out);
+            transport::show(ui, editor, shown_fps, &mut self.shows_graph, out);
         });
         let animation = &editor.scene().animation;
         if animation.take.is_some() {
@@ -121,17 +121,17 @@ impl TimelinePanel {
             return;
         }
         let end = shown_end(animation, editor.timeline().playhead);
-        self.chosen = self
-            .chosen
-            .filter(|(_, last)| self.document == editor.documents() && *last <= end * ROOM);
+        self.zoomed = self
+            .zoomed
+            .filter(|(_, last)| self.document == editor.documents() && *last <= end * MAX_ZOOM_OUT);
         self.document = editor.documents();
         self.frame = ui.cumulative_frame_nr();
-        if self.chosen.is_some() || !ui.input(|input| input.pointer.any_down()) {
-            self.span = self.chosen.unwrap_or((0.0, end));
+        if self.zoomed.is_some() || !ui.input(|input| input.pointer.any_down()) {
+            self.span = self.zoomed.unwrap_or((0.0, end));
         }
         let area = ui.max_rect();
-        let (least, most) = TRACK_LABEL;
-        let left = area.left() + (area.width() * LABEL_SHARE).clamp(least, most);
+        let (min_width, max_width) = TRACK_LABEL;
+        let left = area.left() + (area.width() * LABEL_SHARE).clamp(min_width, max_width);
         let scale = Scale {
             left,
             width: area.right() - 2.0 * GRID - left,
@@ -140,7 +140,7 @@ impl TimelinePanel {
         };
         self.zoom(ui, (&scale, area), end);
         if self.rows.is_busy() && take_escape(ui) {
-            self.rows.give_up(editor, out);
+            self.rows.cancel(editor, out);
         }
         // The ruler stays visible when many rows are scrolled.
         ruler::show(ui, &scale, editor, out);
@@ -152,21 +152,21 @@ impl TimelinePanel {
             if self.shows_graph && animation.keys.len() > 1 {
                 self.graph.show(ui, &scale, editor);
             }
-            self.rows.show_rest(ui, editor, out);
+            self.rows.show_space_below(ui, editor, out);
         });
     }
 
     /// Resets the zoom to show everything.
     pub fn fit(&mut self) {
-        self.chosen = None;
+        self.zoomed = None;
     }
 
     /// Seconds of pauses. Cached, as counting them in every UI frame is slow with many keys.
     fn paused(&mut self, animation: &Arc<Animation>) -> f64 {
-        let known = self.paused.take();
-        let known = known.filter(|(of, _)| Arc::ptr_eq(of, animation));
+        let cached = self.paused.take();
+        let cached = cached.filter(|(of, _)| Arc::ptr_eq(of, animation));
         let count = || (Arc::clone(animation), paused_seconds(&animation.keys));
-        self.paused.insert(known.unwrap_or_else(count)).1
+        self.paused.insert(cached.unwrap_or_else(count)).1
     }
 
     /// Returns whether keys are being dragged or a marquee is being drawn.
@@ -190,26 +190,26 @@ impl TimelinePanel {
             (input.zoom_delta(), pointer.delta().x, pointer.middle_down())
         });
         let (start, last) = self.span;
-        let by = if is_middle {
+        let shift = if is_middle {
             scale.time(at.x) - scale.time(at.x + moved)
         } else {
             0.0
         };
-        if factor == 1.0 && by == 0.0 {
+        if factor == 1.0 && shift == 0.0 {
             return;
         }
-        let held = scale.time(at.x);
-        let most = end * ROOM;
-        let seconds = ((last - start) / f64::from(factor)).clamp(LEAST / 20.0, most);
+        let time_at_pointer = scale.time(at.x);
+        let max_seconds = end * MAX_ZOOM_OUT;
+        let seconds = ((last - start) / f64::from(factor)).clamp(MIN_SECONDS / 20.0, max_seconds);
         // The time under the pointer stays in place.
-        let start = held - (held - start) * seconds / (last - start) + by;
-        let start = start.clamp(0.0, (most - seconds).max(0.0));
+        let start = time_at_pointer - (time_at_pointer - start) * seconds / (last - start) + shift;
+        let start = start.clamp(0.0, (max_seconds - seconds).max(0.0));
         let is_all = start == 0.0 && seconds == end;
-        self.chosen = (!is_all).then_some((start, start + seconds));
+        self.zoomed = (!is_all).then_some((start, start + seconds));
     }
 }
 
 /// The end of the time axis in seconds: some way after the last key and the playhead.
 fn shown_end(animation: &Animation, playhead: f64) -> f64 {
-    (animation.duration().max(playhead) * (1.0 + BEHIND)).max(LEAST)
+    (animation.duration().max(playhead) * (1.0 + MARGIN_SHARE)).max(MIN_SECONDS)
 }

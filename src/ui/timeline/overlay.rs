@@ -6,7 +6,7 @@ use egui::{Color32, Context, Painter, Pos2, Rect, Sense, Stroke, Ui, vec2};
 
 use glam::DVec3;
 
-use super::strip::{held, picked};
+use super::strip::{dragged_keys, selection_after_click};
 use crate::editor::{Action, Edit, Editor};
 use crate::scene::{Camera, KeyPlace, Projection};
 use crate::ui::requests::UiRequests;
@@ -15,25 +15,25 @@ use crate::ui::tools::Screen;
 use crate::worker::Question;
 
 /// Maximum number of ticks.
-const MOST_TICKS: u64 = 1500;
+const MAX_TICKS: u64 = 1500;
 /// Length of a drawn camera, as a fraction of the flight's extent.
 const CAMERA_SHARE: f64 = 0.06;
 /// Half the size of the area around a key that reacts to the pointer, in points.
-const REACH: f32 = 9.0;
+const HIT_REACH: f32 = 9.0;
 /// Drawn cameras nearer to the eye than this fraction of the flight's extent fade.
-const FADING: f64 = 0.3;
+const FADE_SHARE: f64 = 0.3;
 /// Size in points of the grid cells in which only one key reacts to the pointer.
-const CELL: f32 = 4.0;
+const HIT_CELL: f32 = 4.0;
 /// Maximum number of selected keys for which each is drawn as a camera.
-const FEW: usize = 64;
+const MAX_SELECTED_DRAWN: usize = 64;
 /// Minimum distance between drawn cameras in points; keys closer to one are drawn as dots.
-const APART: f32 = 30.0;
+const MIN_CAMERA_DISTANCE: f32 = 30.0;
 /// Radius of the dot at a camera's eye, in points.
-const EYE: f32 = 3.5;
+const EYE_RADIUS: f32 = 3.5;
 /// Maximum width of a drawn camera, in points.
-const LARGEST: f32 = 60.0;
+const MAX_CAMERA_WIDTH: f32 = 60.0;
 /// Opacity of hidden parts.
-const HIDDEN: f32 = 0.22;
+const HIDDEN_OPACITY: f32 = 0.22;
 
 /// The overlay's data for the last picture.
 #[derive(Default)]
@@ -68,36 +68,40 @@ impl Overlay {
                 painter.line_segment([from, to], thin);
             }
         }
-        self.draw_way(&painter, &screen, &colors);
+        self.draw_path(&painter, &screen, &colors);
         let extent = self.extent();
         let size = extent * CAMERA_SHARE;
         let selected = editor.selection().keys();
         let mut drawn: Vec<Pos2> = Vec::new();
-        let mut taken = HashSet::new();
+        let mut occupied_cells = HashSet::new();
         // Among few selected keys, each is drawn and can be grabbed even where it covers others.
-        let are_few = selected.len() <= FEW;
-        for (place, key) in animation.keys.iter().enumerate() {
-            let is_on = selected.contains(&KeyPlace::of_camera(place));
-            let is_selected = is_on && are_few;
-            let color = if is_on {
+        let are_few = selected.len() <= MAX_SELECTED_DRAWN;
+        for (index, key) in animation.keys.iter().enumerate() {
+            let is_in_selection = selected.contains(&KeyPlace::of_camera(index));
+            let is_selected = is_in_selection && are_few;
+            let color = if is_in_selection {
                 colors.accent
             } else {
                 let fade = fade(&screen, extent, key.value.position);
                 colors.curve.gamma_multiply(fade)
             };
             let eye = screen.place(key.value.position);
-            let is_apart = |eye: Pos2| drawn.iter().all(|other| other.distance(eye) > APART);
+            let is_apart = |eye: Pos2| {
+                drawn
+                    .iter()
+                    .all(|other| other.distance(eye) > MIN_CAMERA_DISTANCE)
+            };
             if is_selected || eye.is_some_and(is_apart) {
                 drawn.extend(eye);
                 draw_camera(&painter, &screen, &key.value, size, color);
             } else if let Some(eye) = eye {
-                painter.circle_filled(eye, EYE, color);
+                painter.circle_filled(eye, EYE_RADIUS, color);
             }
-            let cell = |eye: Pos2| [eye.x, eye.y].map(|at| (at / CELL) as i32);
-            let is_first = eye.is_some_and(|eye| taken.insert(cell(eye)));
-            let is_held = self.dragged.is_some_and(|(held, _)| held == place);
-            if is_first || is_selected || is_held {
-                self.handle(ui, editor, &screen, place, out);
+            let cell = |eye: Pos2| [eye.x, eye.y].map(|at| (at / HIT_CELL) as i32);
+            let is_first = eye.is_some_and(|eye| occupied_cells.insert(cell(eye)));
+            let is_dragged = self.dragged.is_some_and(|(dragged, _)| dragged == index);
+            if is_first || is_selected || is_dragged {
+                self.handle(ui, editor, &screen, index, out);
             }
         }
         if let Some(shot) = editor.path_of_camera().at(editor.shown_time()) {
@@ -112,7 +116,7 @@ impl Overlay {
         }
         self.made_for = Some(key);
         let animation = &editor.scene().animation;
-        let stride = animation.frame_count().div_ceil(MOST_TICKS).max(1) as usize;
+        let stride = animation.frame_count().div_ceil(MAX_TICKS).max(1) as usize;
         let frames = (1..=animation.frame_count()).step_by(stride);
         let path = editor.path_of_camera();
         let places = frames.filter_map(|frame| path.at(animation.time_of(frame)));
@@ -121,7 +125,7 @@ impl Overlay {
             .take
             .as_ref()
             .map_or(&[][..], |take| &take.samples);
-        let stride = samples.len().div_ceil(MOST_TICKS as usize).max(1);
+        let stride = samples.len().div_ceil(MAX_TICKS as usize).max(1);
         self.recorded = samples
             .iter()
             .step_by(stride)
@@ -129,9 +133,12 @@ impl Overlay {
             .collect();
         // Visibility is determined by the worker; until the answer, ticks keep that of the old ones with the same
         // index.
-        let known = |index: usize| self.ticks.get(index).is_none_or(|(_, is_clear)| *is_clear);
+        let is_known_clear =
+            |index: usize| self.ticks.get(index).is_none_or(|(_, is_clear)| *is_clear);
         let ticks = places.iter().enumerate();
-        self.ticks = ticks.map(|(index, &point)| (point, known(index))).collect();
+        self.ticks = ticks
+            .map(|(index, &point)| (point, is_known_clear(index)))
+            .collect();
         let camera = Box::new(editor.shown().camera.clone());
         out.questions.push(Question::Visible(key.0, camera, places));
     }
@@ -146,19 +153,19 @@ impl Overlay {
         }
     }
 
-    fn draw_way(&self, painter: &Painter, screen: &Screen, colors: &Palette) {
+    fn draw_path(&self, painter: &Painter, screen: &Screen, colors: &Palette) {
         let places: Vec<(Option<Pos2>, bool)> = self
             .ticks
             .iter()
             .map(|&(point, is_clear)| (screen.place(point), is_clear))
             .collect();
-        let share = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN };
-        let shade = |is_clear: bool| colors.curve.gamma_multiply(share(is_clear));
+        let opacity = |is_clear: bool| if is_clear { 1.0 } else { HIDDEN_OPACITY };
+        let shade = |is_clear: bool| colors.curve.gamma_multiply(opacity(is_clear));
         // A dark edge keeps it visible on light backgrounds.
         for (width, color) in [(3.0, colors.halo.gamma_multiply(0.5)), (1.5, colors.curve)] {
             for pair in places.windows(2) {
                 if let (Some(from), Some(to)) = (pair[0].0, pair[1].0) {
-                    let color = color.gamma_multiply(share(pair[0].1 && pair[1].1));
+                    let color = color.gamma_multiply(opacity(pair[0].1 && pair[1].1));
                     painter.line_segment([from, to], Stroke::new(width, color));
                 }
             }
@@ -193,38 +200,38 @@ impl Overlay {
         ui: &Ui,
         editor: &Editor,
         screen: &Screen,
-        place: usize,
+        index: usize,
         out: &mut UiRequests,
     ) {
         let animation = &editor.scene().animation;
-        let position = animation.keys[place].value.position;
+        let position = animation.keys[index].value.position;
         let Some(at) = screen.place(position) else {
             return;
         };
         // A key dragged out of the picture can still be dragged back.
-        let is_held = self.dragged.is_some_and(|(held, _)| held == place);
-        if !is_held && !screen.view.contains(at) {
+        let is_dragged = self.dragged.is_some_and(|(dragged, _)| dragged == index);
+        if !is_dragged && !screen.view.contains(at) {
             return;
         }
-        let near = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH);
-        let id = ui.scope_id().with(("key in the view", place));
+        let near = Rect::from_center_size(at, vec2(2.0, 2.0) * HIT_REACH);
+        let id = ui.scope_id().with(("key in the view", index));
         let response = ui.interact(near, id, Sense::click_and_drag());
-        let name = format!("Key {} in the view", place + 1);
+        let name = format!("Key {} in the view", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-        let (selected, own) = (editor.selection().keys(), KeyPlace::of_camera(place));
+        let (selected, key_place) = (editor.selection().keys(), KeyPlace::of_camera(index));
         if response.clicked() {
-            out.select(picked(
+            out.select(selection_after_click(
                 selected,
-                own,
+                key_place,
                 ui.input(|input| input.modifiers.shift),
             ));
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             let (origin, direction) = screen.ray(at);
-            self.dragged = Some((place, (position - origin).dot(direction)));
-            out.select(held(selected, own));
+            self.dragged = Some((index, (position - origin).dot(direction)));
+            out.select(dragged_keys(selected, key_place));
         }
-        let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == place) else {
+        let Some((dragged, depth)) = self.dragged.filter(|(dragged, _)| *dragged == index) else {
             return;
         };
         let pointer = response.interact_pointer_pos();
@@ -236,13 +243,15 @@ impl Overlay {
             return;
         };
         // Keeps the depth along the view axis; the distance along the ray depends on the ray's angle to it.
-        let (_, straight) = screen.ray(screen.view.center());
-        let (_, before) = screen.ray(at);
+        let (_, forward) = screen.ray(screen.view.center());
+        let (_, old_direction) = screen.ray(at);
         let (origin, direction) = screen.ray(pointer);
-        let depth = depth * before.dot(straight) / direction.dot(straight);
+        let depth = depth * old_direction.dot(forward) / direction.dot(forward);
         self.dragged = Some((dragged, depth));
-        let by = origin + direction * depth - position;
-        let moved = animation.with_each(&held(selected, own), |key| key.value.position += by);
+        let offset = origin + direction * depth - position;
+        let moved = animation.with_each(&dragged_keys(selected, key_place), |key| {
+            key.value.position += offset;
+        });
         out.edit(Edit::animation(moved, "Move key in the view"));
     }
 }
@@ -250,8 +259,8 @@ impl Overlay {
 /// Opacity of a camera: one near the eye would cover much of the picture without being informative.
 fn fade(screen: &Screen, extent: f64, position: DVec3) -> f32 {
     let (eye, _) = screen.ray(screen.view.center());
-    let far = extent * FADING;
-    (eye.distance(position) / far).clamp(f64::from(HIDDEN), 1.0) as f32
+    let fade_distance = extent * FADE_SHARE;
+    (eye.distance(position) / fade_distance).clamp(f64::from(HIDDEN_OPACITY), 1.0) as f32
 }
 
 /// Draws a camera as a pyramid from its eye to its frame; if it is orthographic, as the frame alone.
@@ -276,11 +285,11 @@ fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, c
     let stroke = Stroke::new(1.0, color);
     let (eye, mut corners) = (screen.place(camera.position), frame(size));
     let width = Rect::from_points(&corners).size().max_elem();
-    if width > LARGEST {
-        corners = frame(size * f64::from(LARGEST / width));
+    if width > MAX_CAMERA_WIDTH {
+        corners = frame(size * f64::from(MAX_CAMERA_WIDTH / width));
     }
     // The size of an orthographic frame is fixed: leave it out if it is too large.
-    if Rect::from_points(&corners).size().max_elem() > 4.0 * LARGEST {
+    if Rect::from_points(&corners).size().max_elem() > 4.0 * MAX_CAMERA_WIDTH {
         corners.clear();
     }
     if let (Some(eye), Projection::Perspective) = (eye, camera.projection) {
@@ -293,6 +302,6 @@ fn draw_camera(painter: &Painter, screen: &Screen, camera: &Camera, size: f64, c
         painter.line_segment([*corner, corners[(n + 1) % corners.len()]], stroke);
     }
     if let Some(eye) = eye {
-        painter.circle_filled(eye, EYE, color);
+        painter.circle_filled(eye, EYE_RADIUS, color);
     }
 }

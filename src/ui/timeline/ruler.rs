@@ -3,15 +3,15 @@
 use egui::{Align2, FontId, PointerButton, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
-use super::strip::{KEY, SMALL, band};
+use super::strip::{KEY_HALF_WIDTH, TIME_FONT_SIZE, band};
 use crate::editor::{Editor, Time};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, palette};
 
 /// Minimum distance between two labelled times, in points.
-const APART: f32 = 64.0;
+const MIN_LABEL_DISTANCE: f32 = 64.0;
 /// Minimum distance between two frame marks, in points.
-const FRAME_APART: f32 = 4.0;
+const MIN_FRAME_MARK_DISTANCE: f32 = 4.0;
 /// Possible intervals of labelled times, in seconds.
 const STEPS: [f64; 13] = [
     0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 60.0, 600.0, 3600.0, 14_400.0, 43_200.0,
@@ -32,10 +32,10 @@ pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
     let colors = palette(ui.ctx());
     let painter = ui.painter();
     let animation = &editor.scene().animation;
-    let per_second = scale.width / scale.seconds() as f32;
+    let points_per_second = scale.width / scale.seconds() as f32;
     let step = STEPS
         .iter()
-        .find(|step| **step as f32 * per_second >= APART);
+        .find(|step| **step as f32 * points_per_second >= MIN_LABEL_DISTANCE);
     let step = step.copied().unwrap_or(scale.end);
     let line = Stroke::new(1.0, colors.line);
     for n in (scale.start / step).ceil().max(0.0) as u32..=(scale.end / step) as u32 {
@@ -47,11 +47,11 @@ pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
             at,
             Align2::LEFT_TOP,
             text,
-            FontId::proportional(SMALL),
+            FontId::proportional(TIME_FONT_SIZE),
             colors.muted,
         );
     }
-    if per_second / animation.frames_per_second as f32 >= FRAME_APART {
+    if points_per_second / animation.frames_per_second as f32 >= MIN_FRAME_MARK_DISTANCE {
         let frame_at = |time: f64| (time.max(0.0) * animation.frames_per_second) as u64 + 1;
         let last = animation.frame_count().min(frame_at(scale.end));
         for frame in frame_at(scale.start)..=last {
@@ -65,7 +65,11 @@ pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
     }
     let x = scale.x(editor.shown_time());
     let tip = pos2(x, rect.bottom());
-    let corners = vec![tip + vec2(-KEY, -KEY), tip + vec2(KEY, -KEY), tip];
+    let corners = vec![
+        tip + vec2(-KEY_HALF_WIDTH, -KEY_HALF_WIDTH),
+        tip + vec2(KEY_HALF_WIDTH, -KEY_HALF_WIDTH),
+        tip,
+    ];
     ui.painter()
         .add(Shape::convex_polygon(corners, colors.accent, Stroke::NONE));
 }

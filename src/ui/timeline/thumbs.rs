@@ -19,9 +19,9 @@ use crate::worker::ThumbnailJob;
 /// Name of the shot's thumbnail; those of keys are named by index.
 const SHOT: u64 = u64::MAX;
 /// Maximum number of keys with a thumbnail.
-const MOST: usize = 200;
+const MAX_KEY_THUMBNAILS: usize = 200;
 /// Width of the shot's thumbnail, as a fraction of the viewport's.
-const SHARE: f32 = 0.28;
+const SHOT_WIDTH_SHARE: f32 = 0.28;
 
 /// The thumbnails, and what they were requested for.
 #[derive(Default)]
@@ -31,9 +31,9 @@ pub struct Thumbs {
     /// Every `stride`-th key has a thumbnail.
     stride: usize,
     /// The scene whose keys were requested, and the scale of the screen in percent.
-    asked: Option<(Arc<Scene>, u32)>,
+    requested: Option<(Arc<Scene>, u32)>,
     /// Scene, time and pixel height that the shot was requested for.
-    asked_shot: Option<(Arc<Scene>, f64, u32)>,
+    requested_shot: Option<(Arc<Scene>, f64, u32)>,
 }
 
 impl Thumbs {
@@ -47,9 +47,9 @@ impl Thumbs {
                 continue;
             }
             let index = name as usize;
-            let own = self.keys.get_mut(index);
-            if let Some(own) = own.filter(|_| index.is_multiple_of(self.stride)) {
-                *own = Some(texture);
+            let slot = self.keys.get_mut(index);
+            if let Some(slot) = slot.filter(|_| index.is_multiple_of(self.stride)) {
+                *slot = Some(texture);
             }
         }
     }
@@ -77,50 +77,52 @@ impl Thumbs {
                 height as u32,
             )
         };
-        let mut wishes = Vec::new();
+        let mut jobs = Vec::new();
         if !editor.looks_through() {
-            let size = pixels(shot_place(view, aspect).height());
+            let size = pixels(shot_rect(view, aspect).height());
             let time = editor.shown_time();
-            let asked = self.asked_shot.as_ref();
-            if asked.is_none_or(|asked| {
-                !shows_same(&asked.0, scene) || (asked.1, asked.2) != (time, size.1)
+            let requested = self.requested_shot.as_ref();
+            if requested.is_none_or(|requested| {
+                !shows_same(&requested.0, scene) || (requested.1, requested.2) != (time, size.1)
             }) {
-                self.asked_shot = Some((Arc::clone(scene), time, size.1));
-                wishes.push(ThumbnailJob {
+                self.requested_shot = Some((Arc::clone(scene), time, size.1));
+                jobs.push(ThumbnailJob {
                     name: SHOT,
                     scene: shot(scene, editor.path_of_camera(), time),
                     size,
                 });
             }
         }
-        let is_resting = !ctx.input(|input| input.pointer.any_down())
+        let is_idle = !ctx.input(|input| input.pointer.any_down())
             && !editor.timeline().is_playing
             && editor.timeline().recorded().is_none();
-        let (asked, scale) = (self.asked.as_ref(), (scale * 100.0) as u32);
-        if is_resting && asked.is_none_or(|asked| !shows_same(&asked.0, scene) || asked.1 != scale)
+        let (requested, scale) = (self.requested.as_ref(), (scale * 100.0) as u32);
+        if is_idle
+            && requested
+                .is_none_or(|requested| !shows_same(&requested.0, scene) || requested.1 != scale)
         {
-            self.asked = Some((Arc::clone(scene), scale));
+            self.requested = Some((Arc::clone(scene), scale));
             // With very many keys, only every `stride`-th one has a thumbnail.
-            let stride = keys.len().div_ceil(MOST).max(1);
+            let stride = keys.len().div_ceil(MAX_KEY_THUMBNAILS).max(1);
             if self.stride != stride {
                 self.keys.clear();
                 self.stride = stride;
             }
             self.keys.resize(keys.len(), None);
-            let sketch = |(index, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
+            let job_of = |(index, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
                 name: index as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),
                 size: pixels(THUMB),
             };
-            wishes.extend(keys.iter().enumerate().step_by(stride).map(sketch));
+            jobs.extend(keys.iter().enumerate().step_by(stride).map(job_of));
         }
-        (!wishes.is_empty()).then_some(wishes)
+        (!jobs.is_empty()).then_some(jobs)
     }
 
     /// Draws the thumbnails at their keys, skipping those that would overlap.
     pub fn show(&self, ui: &mut Ui, scale: &Scale, animation: &Animation) {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), THUMB), Sense::hover());
-        let mut free = f32::NEG_INFINITY;
+        let mut next_free_x = f32::NEG_INFINITY;
         for (key, texture) in animation.keys.iter().zip(&self.keys) {
             let Some(texture) = texture else { continue };
             let size = texture.size_vec2();
@@ -129,12 +131,12 @@ impl Thumbs {
                 continue;
             }
             let left = scale.x(key.time) - width / 2.0;
-            if left < free {
+            if left < next_free_x {
                 continue;
             }
-            free = left + width + 2.0;
-            let place = Rect::from_min_size(pos2(left, rect.top()), vec2(width, THUMB));
-            paint(ui.painter(), texture, place);
+            next_free_x = left + width + 2.0;
+            let thumb_rect = Rect::from_min_size(pos2(left, rect.top()), vec2(width, THUMB));
+            paint(ui.painter(), texture, thumb_rect);
         }
     }
 
@@ -145,10 +147,10 @@ impl Thumbs {
             return;
         };
         let size = texture.size_vec2();
-        let place = shot_place(view, size.x / size.y);
-        paint(ui.painter(), texture, place);
-        let response = ui.interact(place, Id::unique("shot"), Sense::click_and_drag());
-        let words = "A click looks through the shot camera";
+        let rect = shot_rect(view, size.x / size.y);
+        paint(ui.painter(), texture, rect);
+        let response = ui.interact(rect, Id::unique("shot"), Sense::click_and_drag());
+        let words = "Click to look through the shot camera";
         let response = response.hint(with_key(ui, words, &Command::LookThrough));
         if response.accessible_name("Shot").clicked() {
             out.commands.push(Command::LookThrough);
@@ -156,9 +158,9 @@ impl Thumbs {
         let colors = palette(ui.ctx());
         let stroke = egui::Stroke::new(1.0, colors.accent);
         ui.painter()
-            .rect_stroke(place, 0, stroke, egui::StrokeKind::Outside);
+            .rect_stroke(rect, 0, stroke, egui::StrokeKind::Outside);
         let font = egui::FontId::proportional(11.0);
-        let at = place.left_top() + vec2(GRID / 2.0, 2.0);
+        let at = rect.left_top() + vec2(GRID / 2.0, 2.0);
         ui.painter()
             .text(at, egui::Align2::LEFT_TOP, "Shot", font, colors.on_picture);
     }
@@ -170,8 +172,8 @@ fn shows_same(one: &Scene, other: &Scene) -> bool {
 }
 
 /// Rectangle of the shot in the lower right corner of the viewport.
-fn shot_place(view: Rect, aspect: f32) -> Rect {
-    let width = (view.width() * SHARE).round();
+fn shot_rect(view: Rect, aspect: f32) -> Rect {
+    let width = (view.width() * SHOT_WIDTH_SHARE).round();
     let size = vec2(width, (width / aspect).round());
     Rect::from_min_size(view.max - size - vec2(GRID, GRID), size)
 }

@@ -11,54 +11,54 @@ use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
 use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
-use crate::ui::inspector::told_of_replaced;
+use crate::ui::inspector::replaced_keys_message;
 use crate::ui::number::{Field, lone};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::words::counted;
 
 /// Minimum window width in points to show all controls.
-const WIDE: f32 = 1040.0;
+const MIN_WIDTH_FOR_ALL: f32 = 1040.0;
 /// Minimum window width in points to show all controls but the rates.
-const NARROW: f32 = 860.0;
+const MIN_WIDTH_WITHOUT_RATES: f32 = 860.0;
 /// Minimum window width in points to show buttons with text.
-const TINY: f32 = 720.0;
+const MIN_WIDTH_FOR_TEXT: f32 = 720.0;
 /// Duration of a preset flight, in seconds.
 const PRESET_SECONDS: f64 = 8.0;
 /// Number of samples beyond which a recording counts as long: one of a minute or two.
-const LONG: usize = 5000;
+const LONG_RECORDING: usize = 5000;
 
 /// Shows the controls for playback and keys, and the current time.
-pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out: &mut UiRequests) {
+pub fn show(ui: &mut Ui, editor: &Editor, shown_fps: f64, graph: &mut bool, out: &mut UiRequests) {
     let timeline = editor.timeline();
     let animation = &editor.scene().animation;
-    let mut press = |ui: &mut Ui, icon, name: &str, command: Command| {
+    let mut command_button = |ui: &mut Ui, icon, name: &str, command: Command| {
         if icons::button(ui, icon, &with_key(ui, name, &command)).clicked() {
             out.commands.push(command);
         }
     };
-    press(ui, icons::FIRST, "First frame", Command::FirstFrame);
-    press(ui, icons::PREVIOUS, "Previous key", Command::PreviousKey);
-    press(ui, icons::BACK, "One frame back", Command::FrameBack);
+    command_button(ui, icons::FIRST, "First frame", Command::FirstFrame);
+    command_button(ui, icons::PREVIOUS, "Previous key", Command::PreviousKey);
+    command_button(ui, icons::BACK, "One frame back", Command::FrameBack);
     let (icon, name) = if timeline.is_playing {
         (icons::PAUSE, "Pause")
     } else {
         (icons::PLAY, "Play")
     };
-    press(ui, icon, name, Command::Play);
-    press(ui, icons::FORWARD, "One frame on", Command::FrameOn);
-    press(ui, icons::NEXT, "Next key", Command::NextKey);
-    press(ui, icons::LAST, "Last frame", Command::LastFrame);
+    command_button(ui, icon, name, Command::Play);
+    command_button(ui, icons::FORWARD, "One frame forward", Command::FrameOn);
+    command_button(ui, icons::NEXT, "Next key", Command::NextKey);
+    command_button(ui, icons::LAST, "Last frame", Command::LastFrame);
     let (icon, name, next) = match timeline.repeat {
-        Repeat::Once => (icons::ONCE, "Plays once; click for loop", Repeat::Loop),
+        Repeat::Once => (icons::ONCE, "Plays once; click to loop", Repeat::Loop),
         Repeat::Loop => (
             icons::LOOP,
-            "Plays in a loop; click for to and fro",
+            "Plays in a loop; click to play back and forth",
             Repeat::PingPong,
         ),
         Repeat::PingPong => (
             icons::PING_PONG,
-            "Plays to and fro; click for once",
+            "Plays back and forth; click to play once",
             Repeat::Once,
         ),
     };
@@ -73,14 +73,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     );
     ui.label(RichText::new(times).monospace());
     let width = ui.content_rect().width();
-    if width >= NARROW {
+    if width >= MIN_WIDTH_WITHOUT_RATES {
         frame_field(ui, editor, out);
     }
     ui.separator();
-    record_button(ui, editor, width >= TINY, out);
-    let words = "Set a key at the playhead from the view, in place of one that is there";
+    record_button(ui, editor, width >= MIN_WIDTH_FOR_TEXT, out);
+    let words = "Set a key at the playhead from the current view, replacing one that is there";
     let hint = with_key(ui, words, &Command::AddKey);
-    let add_key = if width >= TINY {
+    let add_key = if width >= MIN_WIDTH_FOR_TEXT {
         Button::new("Add key")
     } else {
         Button::new(icons::text(icons::KEY))
@@ -89,17 +89,18 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
     if add_key.hint(hint).clicked() {
         out.commands.push(Command::AddKey);
     }
-    if width >= NARROW {
+    if width >= MIN_WIDTH_WITHOUT_RATES {
         through_shot(ui, editor, out);
     }
     ui.separator();
-    if width >= WIDE {
+    if width >= MIN_WIDTH_FOR_ALL {
         rates(ui, editor, (graph, false), out);
     } else {
-        let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        let more = MenuButton::from_button(Button::new(icons::text(icons::OTHER))).config(stays);
+        let menu_config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        let more =
+            MenuButton::from_button(Button::new(icons::text(icons::OTHER))).config(menu_config);
         let (button, _) = more.ui(ui, |ui| {
-            if width < NARROW {
+            if width < MIN_WIDTH_WITHOUT_RATES {
                 ui.horizontal(|ui| {
                     ui.weak("frame");
                     frame_field(ui, editor, out);
@@ -109,18 +110,18 @@ pub fn show(ui: &mut Ui, editor: &Editor, per_second: f64, graph: &mut bool, out
             rates(ui, editor, (graph, true), out);
         });
         button
-            .accessible_name("More of the timeline")
-            .hint("Length, frames per second, playing speed, graph of the speed; in a narrow window the frame and the shot as well");
+            .accessible_name("More timeline settings")
+            .hint("Length, frames per second, playback speed, speed graph; in a narrow window the frame and the shot as well");
     }
     // If the view is not the shot, and nothing but the camera has keys, the picture does not change during
     // playback.
-    if timeline.is_playing && (editor.looks_through() || per_second > 0.0) {
+    if timeline.is_playing && (editor.looks_through() || shown_fps > 0.0) {
         let text = format!(
-            "{per_second:.1} of {:.0} fps",
+            "{shown_fps:.1} of {:.0} fps",
             animation.frames_per_second * timeline.speed
         );
         ui.label(RichText::new(text).monospace().weak())
-            .hint("Pictures a second on screen; a slow scene loses resolution, never time");
+            .hint("Pictures per second on screen; a slow scene loses resolution, never time");
     }
 }
 
@@ -132,7 +133,7 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let last = animation.frame_at(MAX_SECONDS) as f64;
     let field = Field {
         name: "frame",
-        hint: "Frame, from 1; the number that glint render --frame takes. Behind the last one there is room for more keys",
+        hint: "Frame, counted from 1, as in glint render --frame. There is room for more keys after the last frame",
         unit: "",
         default: 1.0,
         range: 1.0..=last,
@@ -149,7 +150,7 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let has_keys = !editor.scene().animation.keys.is_empty();
     let through = Button::selectable(editor.looks_through(), "Through shot");
-    let words = "Look through the shot camera, or at it from the view";
+    let words = "Enter or leave the shot camera";
     let hint = with_key(ui, words, &Command::LookThrough);
     if ui.add_enabled(has_keys, through).hint(hint).clicked() {
         out.commands.push(Command::LookThrough);
@@ -204,7 +205,7 @@ fn rates(
     let mut fps = animation.frames_per_second;
     let field = Field {
         name: "frames per second",
-        hint: "Frames per second; the flight stays as it is",
+        hint: "Frames per second; the flight does not change",
         unit: " fps",
         default: animation.frames_per_second,
         range: FRAME_RATES,
@@ -221,8 +222,8 @@ fn rates(
     let before = editor.timeline().speed;
     let mut speed = before;
     let field = Field {
-        name: "playing speed",
-        hint: "Playing speed; 1 is real time",
+        name: "playback speed",
+        hint: "Playback speed; 1 is real time",
         unit: "×",
         default: 1.0,
         range: 0.05..=20.0,
@@ -240,9 +241,9 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     let Some(take) = &animation.take else { return };
     let before = editor.timeline().tolerance;
     // Making keys of a long recording takes seconds, so it is done when the slider is released.
-    let is_long = take.samples.len() > LONG;
-    let held = Id::unique(("tolerance of a long recording", Arc::as_ptr(take).addr()));
-    let mut tolerance = ui.data(|data| data.get_temp(held)).unwrap_or(before);
+    let is_long = take.samples.len() > LONG_RECORDING;
+    let slider_id = Id::unique(("tolerance of a long recording", Arc::as_ptr(take).addr()));
+    let mut tolerance = ui.data(|data| data.get_temp(slider_id)).unwrap_or(before);
     ui.weak("tolerance");
     let slider = Slider::new(&mut tolerance, 0.05..=1000.0)
         .clamping(egui::SliderClamping::Edits)
@@ -250,19 +251,19 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
         .suffix(" px")
         .max_decimals(2);
     let slider = ui.add(slider).accessible_name("tolerance");
-    let hint = "Make the keys anew from the recording: how far they may be off. Other changes of the keys are lost (undo brings them back)";
+    let hint = "How far the keys may deviate from the recording. A change makes the keys again and discards other edits of them (undo brings them back)";
     let slider = slider.hint(hint);
-    let is_held = is_long && slider.dragged();
-    let is_let_go = ui.data_mut(|data| {
-        let was_held = data.remove_temp::<f64>(held).is_some();
-        if is_held {
-            data.insert_temp(held, tolerance);
+    let is_dragging = is_long && slider.dragged();
+    let is_released = ui.data_mut(|data| {
+        let was_dragging = data.remove_temp::<f64>(slider_id).is_some();
+        if is_dragging {
+            data.insert_temp(slider_id, tolerance);
         }
-        was_held && !is_held
+        was_dragging && !is_dragging
     });
     // The widget rounds its value, which is no change by the user.
-    let is_other = (tolerance - before).abs() > 0.006;
-    if is_other && !is_held && (slider.changed() || is_let_go) {
+    let is_changed = (tolerance - before).abs() > 0.006;
+    if is_changed && !is_dragging && (slider.changed() || is_released) {
         out.time(Time::Simplify(tolerance));
     }
     // To the right of the slider, which must not move during a drag.
@@ -279,26 +280,26 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
             worst.deviation, worst.time
         );
         ui.label(RichText::new(text).monospace())
-            .hint("How far the picture of the keys is off that of the recording at most, at 1024², and when");
+            .hint("Largest deviation of the keys from the recording, in pixels of a 1024² picture, and when it occurs");
     }
     if editor.timeline().is_edited {
         ui.weak("edited by hand")
-            .hint("The keys are not those that were made of the recording");
+            .hint("The keys were changed after they were made from the recording");
     }
     ui.separator();
     if paused > 0.0 {
         ui.weak(format!("{paused:.1} s of pauses"));
     }
-    let forget = ui.button("Forget the recording");
-    if forget
-        .hint("Keep the keys, and make the file smaller")
+    let discard = ui.button("Discard the recording");
+    if discard
+        .hint("Keeps the keys and makes the file smaller")
         .clicked()
     {
         let changed = Animation {
             take: None,
             ..Animation::clone(animation)
         };
-        out.edit(Edit::animation(changed, "Forget the recording"));
+        out.edit(Edit::animation(changed, "Discard the recording"));
     }
 }
 
@@ -322,8 +323,8 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     let shown = editor.shown_time();
     // Recorded keys may lie between frames, so frames are compared.
     if animation.nearest_frame(first) == animation.nearest_frame(shown) {
-        let told = "Copies of keys go to the playhead: move it to where they shall be";
-        return vec![Action::Tell(told.to_owned())];
+        let message = "Keys are copied to the playhead: move it to where they should go";
+        return vec![Action::Tell(message.to_owned())];
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
     let added = places.len() + animation.places().len();
@@ -332,8 +333,8 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
         Action::Edit(Edit::animation(changed, "Copy keys")),
         Action::Select(new.into()),
     ];
-    let told = told_of_replaced(replaced).map(Action::Tell);
-    made.into_iter().chain(told).collect()
+    let message = replaced_keys_message(replaced).map(Action::Tell);
+    made.into_iter().chain(message).collect()
 }
 
 /// The actions of a timeline command; none for other commands, or if they do not apply.
@@ -347,31 +348,31 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
         let of_camera = animation.keys.iter().map(|key| key.time);
         of_camera.chain(tracks.map(|key| key.time))
     };
-    let timed = |time: Time| vec![Action::Time(time)];
+    let time_action = |time: Time| vec![Action::Time(time)];
     match command {
-        Command::Play => timed(Time::Play(!editor.timeline().is_playing)),
-        Command::FirstFrame => timed(Time::Seek(0.0)),
+        Command::Play => time_action(Time::Play(!editor.timeline().is_playing)),
+        Command::FirstFrame => time_action(Time::Seek(0.0)),
         // The frame nearest to the last key may be beyond the last frame.
         Command::LastFrame => {
             let last = animation.time_of(animation.frame_count());
-            timed(Time::Seek(last))
+            time_action(Time::Seek(last))
         }
-        Command::FrameBack => timed(Time::Step(-1)),
-        Command::FrameOn => timed(Time::Step(1)),
+        Command::FrameBack => time_action(Time::Step(-1)),
+        Command::FrameOn => time_action(Time::Step(1)),
         Command::PreviousKey => {
             let earlier = times().filter(|key| frame(*key) < frame(time));
             let key = earlier.max_by(f64::total_cmp);
-            key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
+            key.map_or(Vec::new(), |key| time_action(Time::Seek(key)))
         }
         Command::NextKey => {
             let later = times().filter(|key| frame(*key) > frame(time));
             let key = later.min_by(f64::total_cmp);
-            key.map_or(Vec::new(), |key| timed(Time::Seek(key)))
+            key.map_or(Vec::new(), |key| time_action(Time::Seek(key)))
         }
-        Command::Record => timed(Time::Record),
-        Command::StopRecording => timed(Time::Stop),
+        Command::Record => time_action(Time::Record),
+        Command::StopRecording => time_action(Time::Stop),
         Command::SelectKeys => vec![Action::Select(animation.places().into())],
-        Command::LookThrough => timed(Time::LookThrough(!editor.looks_through())),
+        Command::LookThrough => time_action(Time::LookThrough(!editor.looks_through())),
         Command::Duplicate => copied_keys(editor),
         Command::AddKey => {
             let view = editor.shown().camera.clone();
@@ -384,8 +385,8 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
         Command::Preset(preset) => {
             let keys = preset.keys(&editor.shown().camera, editor.middle(), PRESET_SECONDS);
             if keys.windows(2).all(|pair| pair[0].value == pair[1].value) {
-                let told = "Nothing moves in this flight from here: look from a side first";
-                return vec![Action::Tell(told.to_owned())];
+                let message = "This flight would not move from here: look from the side first";
+                return vec![Action::Tell(message.to_owned())];
             }
             let changed = Animation {
                 keys,
@@ -393,10 +394,10 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
                 ..Animation::clone(animation)
             };
             let name = preset.words().0;
-            let told = replaced_flight(name, animation).map(Action::Tell);
+            let message = replaced_flight(name, animation).map(Action::Tell);
             let edit = Action::Edit(Edit::animation(changed, name));
             let made = [edit, Action::Time(Time::Seek(0.0))].into_iter();
-            made.chain(told).collect()
+            made.chain(message).collect()
         }
         Command::Retime(retime) => {
             let changed = Animation {
@@ -404,8 +405,8 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
                 ..Animation::clone(animation)
             };
             if changed == **animation {
-                let told = "This changes nothing of the flight as it is";
-                return vec![Action::Tell(told.to_owned())];
+                let message = "This would not change the flight";
+                return vec![Action::Tell(message.to_owned())];
             }
             // If the flight now ends before the playhead, the playhead moves to the end.
             let end = changed.duration();

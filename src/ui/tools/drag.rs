@@ -5,9 +5,9 @@ use glam::DVec3;
 
 use super::gizmo::{Handle, label};
 use super::grip::{Grip, Pull};
-use super::navigate::{panned, turn};
+use super::navigate::{orbit_angles, panned};
 use super::screen::Screen;
-use super::seen_objects::{SeenObjects, ends, item_of};
+use super::seen_objects::{SeenObjects, is_finite, item_of};
 use super::subject::Movable;
 use crate::editor::{Action, Edit, Editor, Selection};
 use crate::image::Thing;
@@ -20,7 +20,7 @@ use crate::ui::viewport::Place;
 use crate::words::counted;
 
 /// Assumed distance where nothing is known of what is seen, in world units.
-const SOMEWHERE: f64 = 100.0;
+const DEFAULT_DISTANCE: f64 = 100.0;
 
 /// A drag in progress.
 pub enum Drag {
@@ -29,7 +29,7 @@ pub enum Drag {
     /// Pans the camera so that a point follows the pointer.
     Pan(DVec3),
     /// Draws a selection rectangle from this position; what it finds is added to this selection.
-    Frame(Pos2, Selection),
+    Marquee(Pos2, Selection),
     /// Moves a handle of the selection.
     Grip(Box<Grip>),
     /// Started at this position, with Shift or not, and waits to learn what is there.
@@ -64,10 +64,10 @@ impl Pane<'_> {
         };
         let on_shape = shape.and_then(|shape| self.screen.on_shape(at, shape));
         let forward = self.screen.forward();
-        let level = || self.screen.on_plane(at, middle?, forward);
-        on_shape.or_else(level).unwrap_or_else(|| {
+        let at_middle_depth = || self.screen.on_plane(at, middle?, forward);
+        on_shape.or_else(at_middle_depth).unwrap_or_else(|| {
             let (origin, direction) = self.screen.ray(at);
-            origin + direction * SOMEWHERE
+            origin + direction * DEFAULT_DISTANCE
         })
     }
 
@@ -76,16 +76,16 @@ impl Pane<'_> {
     fn pivot(&self, seen_objects: &SeenObjects, at: Pos2) -> DVec3 {
         let (selection, scene) = (self.editor.selection(), self.editor.shown());
         let mut selected = Movable::of(selection, scene).into_iter();
-        let has_end = selected.all(|subject| subject.bounds().is_some());
+        let are_finite = selected.all(|subject| subject.bounds().is_some());
         let middle = selection.middle(scene).filter(|middle| {
             let place = self.screen.place(*middle);
-            has_end && place.is_some_and(|place| self.place.rect.contains(place))
+            are_finite && place.is_some_and(|place| self.place.rect.contains(place))
         });
         middle.unwrap_or_else(|| self.point_at(seen_objects, at))
     }
 
     /// The thing seen at a position, if it can be grabbed.
-    fn body_at(&self, seen_objects: &SeenObjects, at: Pos2) -> Option<Thing> {
+    fn grabbable_at(&self, seen_objects: &SeenObjects, at: Pos2) -> Option<Thing> {
         let seen = seen_objects.at(self.editor, self.place.rect, at)?;
         // A sphere around the camera surrounds it on all sides, as the sky does, and is no more grabbed than that.
         let eye = self.editor.shown().camera.position;
@@ -96,7 +96,7 @@ impl Pane<'_> {
             },
             Thing::Light(_) => false,
         };
-        (ends(self.editor.shown(), seen) && !surrounds).then_some(seen)
+        (is_finite(self.editor.shown(), seen) && !surrounds).then_some(seen)
     }
 }
 
@@ -111,8 +111,8 @@ impl Drag {
         let editor = view.editor;
         if let Some(handle) = handle {
             let before = Movable::of(editor.selection(), editor.shown());
-            let held = (before, editor.selection().pivot(editor.shown())?);
-            let grip = Grip::new(&view.screen, held, handle, at)?;
+            let grabbed = (before, editor.selection().pivot(editor.shown())?);
+            let grip = Grip::new(&view.screen, grabbed, handle, at)?;
             return Some(Self::Grip(Box::new(grip)));
         }
         if editor.looks_through() || editor.timeline().is_playing {
@@ -121,20 +121,20 @@ impl Drag {
         if seen_objects.map(editor).is_none() {
             return Some(Self::Undecided(at, is_shifted));
         }
-        if let Some(body) = view.body_at(seen_objects, at) {
-            let item = item_of(body);
+        if let Some(thing) = view.grabbable_at(seen_objects, at) {
+            let item = item_of(thing);
             let mut selected = editor.selection().clone();
             if !selected.has(item) {
                 selected = selected.picked(editor.scene(), &[item]);
                 out.actions.push(Action::Select(selected.clone()));
             }
             let before = Movable::of(&selected, editor.shown());
-            let held = (before, selected.pivot(editor.shown())?);
-            let grip = Grip::body(held, at, view.point_at(seen_objects, at));
+            let grabbed = (before, selected.pivot(editor.shown())?);
+            let grip = Grip::free(grabbed, at, view.point_at(seen_objects, at));
             return Some(Self::Grip(Box::new(grip)));
         }
         Some(if is_shifted {
-            Self::Frame(at, editor.selection().clone())
+            Self::Marquee(at, editor.selection().clone())
         } else {
             Self::Orbit(view.pivot(seen_objects, at))
         })
@@ -149,7 +149,7 @@ impl Drag {
     }
 
     /// Continues the drag by a frame; returns whether it goes on. Releasing the button ends it, Escape cancels it.
-    pub fn go_on(
+    pub fn advance(
         &mut self,
         ui: &Ui,
         view: &Pane,
@@ -179,16 +179,16 @@ impl Drag {
         let moved = drag_of(response);
         match self {
             Self::Orbit(about) if moved != egui::Vec2::ZERO => {
-                out.actions.push(Action::Orbit(*about, turn(moved)));
+                out.actions.push(Action::Orbit(*about, orbit_angles(moved)));
             }
             Self::Pan(point) if moved != egui::Vec2::ZERO => {
                 let camera = panned(&view.editor.shown().camera, &view.screen, *point, moved);
                 out.edit(Edit::Camera(camera, "move"));
             }
             Self::Orbit(_) | Self::Pan(_) | Self::Undecided(..) => {}
-            Self::Frame(from, before) => {
-                let part = Rect::from_two_pos(*from, at);
-                let found = seen_objects.within(view.editor, view.place.rect, part);
+            Self::Marquee(from, before) => {
+                let marquee = Rect::from_two_pos(*from, at);
+                let found = seen_objects.within(view.editor, view.place.rect, marquee);
                 // Whole groups, as with a click: the next step could otherwise tear them apart.
                 let found = before.picked(view.editor.scene(), &found);
                 let found = found.items();
@@ -197,12 +197,12 @@ impl Drag {
                     out.actions.push(Action::Select(Selection::all(items)));
                     return false;
                 }
-                show_frame(view, part, (at, found.len()));
+                show_marquee(view, marquee, (at, found.len()));
             }
             Self::Grip(grip) => {
                 ui.set_cursor_icon(CursorIcon::Grabbing);
                 let is_entered = grip.takes_numbers() && type_into(ui, &mut grip.typed);
-                let is_done = is_entered && grip.wrong().is_none();
+                let is_done = is_entered && grip.typing_error().is_none();
                 let modifiers = ui.input(|input| input.modifiers);
                 let pull = Pull {
                     at,
@@ -223,11 +223,12 @@ impl Drag {
     }
 }
 
-fn show_frame(view: &Pane, part: Rect, (at, count): (Pos2, usize)) {
+fn show_marquee(view: &Pane, marquee: Rect, (at, count): (Pos2, usize)) {
     let colors = palette(view.painter.ctx());
     let fill = colors.accent.gamma_multiply(0.15);
     let line = Stroke::new(1.0, colors.accent);
-    view.painter.rect(part, 0, fill, line, StrokeKind::Inside);
+    view.painter
+        .rect(marquee, 0, fill, line, StrokeKind::Inside);
     label(&view.painter, at, &counted(count, "item"));
 }
 

@@ -13,22 +13,22 @@ use crate::scene::{Scene, Shape};
 use crate::ui::theme::{GRID, palette};
 
 /// Length of the arrows, in points.
-pub const LENGTH: f64 = 76.0;
-/// Start of the arrows, and extent of the squares between them, in units of [`LENGTH`].
+pub const ARROW_LENGTH: f64 = 76.0;
+/// Start of the arrows, and extent of the squares between them, in units of [`ARROW_LENGTH`].
 const GAP: f64 = 0.16;
 const SQUARE: (f64, f64) = (0.3, 0.5);
-/// Radius of the rotation rings, in units of [`LENGTH`].
-pub const RING: f64 = 1.2;
-/// The scaling knob's stem, in units of [`LENGTH`]: it starts at the rings.
-const KNOB: (f32, f32) = (RING as f32, 1.5);
+/// Radius of the rotation rings, in units of [`ARROW_LENGTH`].
+pub const RING_RADIUS: f64 = 1.2;
+/// The scaling knob's stem, in units of [`ARROW_LENGTH`]: it starts at the rings.
+const KNOB_STEM: (f32, f32) = (RING_RADIUS as f32, 1.5);
 /// Half the side of the knob, in points.
-const KNOB_REACH: f32 = 5.0;
+const KNOB_HALF_SIDE: f32 = 5.0;
 /// Maximum distance of the pointer from a handle that it grabs, in points.
-const REACH: f32 = 7.0;
+const GRAB_DISTANCE: f32 = 7.0;
 /// Length of an arrow head, in points.
-const HEAD: f32 = 9.0;
+const HEAD_LENGTH: f32 = 9.0;
 /// Minimum length of an arrow that is shown, in points: shorter ones point towards the eye.
-const SHORTEST: f32 = 14.0;
+const MIN_ARROW_LENGTH: f32 = 14.0;
 /// Number of corners of a drawn ring.
 const CORNERS: usize = 72;
 /// The axes and their names.
@@ -56,12 +56,12 @@ pub enum Handle {
 }
 
 /// A handle as it is drawn: a dot, a line between two points, or the outline of an area.
-struct Drawn {
+struct DrawnHandle {
     handle: Handle,
     line: Vec<Pos2>,
 }
 
-impl Drawn {
+impl DrawnHandle {
     fn distance(&self, at: Pos2) -> f32 {
         let nearest = sides(&self.line)
             .map(|(a, b)| {
@@ -80,7 +80,7 @@ impl Drawn {
                     .line
                     .last()
                     .map_or(f32::INFINITY, |tip| (*tip - at).length());
-                nearest.min(head - HEAD)
+                nearest.min(head - HEAD_LENGTH)
             }
             _ => nearest,
         }
@@ -115,7 +115,7 @@ fn ring(screen: &Screen, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
 }
 
 /// The visible contour of a sphere.
-fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
+fn sphere_outline(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
     let Some(at) = screen.place(center) else {
         return Vec::new();
     };
@@ -131,13 +131,13 @@ fn rim(screen: &Screen, center: DVec3, radius: f64) -> Vec<Pos2> {
     if distance <= radius {
         return Vec::new();
     }
-    let nearer = radius * radius / distance;
-    let seen = radius * (1.0 - (radius / distance).powi(2)).sqrt();
-    ring(screen, center - axis * nearer, axis, seen)
+    let offset = radius * radius / distance;
+    let outline_radius = radius * (1.0 - (radius / distance).powi(2)).sqrt();
+    ring(screen, center - axis * offset, axis, outline_radius)
 }
 
 /// All handles of the selection.
-fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
+fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<DrawnHandle> {
     let Some(middle) = selected.pivot(scene) else {
         return Vec::new();
     };
@@ -148,20 +148,20 @@ fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
     let Some(place) = screen.place(middle) else {
         return Vec::new();
     };
-    let length = screen.unit_at(middle) * LENGTH;
+    let length = screen.unit_at(middle) * ARROW_LENGTH;
     let mut drawn = Vec::new();
     let mut add = |handle: Handle, line: Option<Vec<Pos2>>| {
         if let Some(line) = line.filter(|line| !line.is_empty()) {
-            drawn.push(Drawn { handle, line });
+            drawn.push(DrawnHandle { handle, line });
         }
     };
     let at = |point: DVec3| screen.place(point);
     if let Some(subject) = &only {
-        own_handles(screen, subject, length, &mut add);
+        shape_handles(screen, subject, length, &mut add);
     }
     for (axis, (direction, _)) in AXES.iter().enumerate() {
         let line = at(middle + *direction * length * GAP).zip(at(middle + *direction * length));
-        let line = line.filter(|(from, to)| (*to - *from).length() >= SHORTEST);
+        let line = line.filter(|(from, to)| (*to - *from).length() >= MIN_ARROW_LENGTH);
         add(Handle::Along(axis), line.map(|(from, to)| vec![from, to]));
         let (u, v) = (AXES[(axis + 1) % 3].0, AXES[(axis + 2) % 3].0);
         let corner = |a: f64, b: f64| at(middle + (u * a + v * b) * length);
@@ -176,26 +176,26 @@ fn handles(screen: &Screen, selected: &Selection, scene: &Scene) -> Vec<Drawn> {
         .collect();
         let is_edge_on = |line: &Vec<Pos2>| {
             let (a, b) = (line[1] - line[0], line[3] - line[0]);
-            (a.x * b.y - a.y * b.x).abs() < SHORTEST
+            (a.x * b.y - a.y * b.x).abs() < MIN_ARROW_LENGTH
         };
         add(
             Handle::Across(axis),
             square.filter(|line| !is_edge_on(line)),
         );
         if only.as_ref().is_none_or(is_mesh) {
-            let line = ring(screen, middle, *direction, length * RING);
+            let line = ring(screen, middle, *direction, length * RING_RADIUS);
             add(Handle::Turn(axis), Some(line));
         }
     }
     if only.as_ref().is_none_or(has_size) {
-        let way = vec2(
+        let diagonal = vec2(
             std::f32::consts::FRAC_1_SQRT_2,
             -std::f32::consts::FRAC_1_SQRT_2,
         );
-        let (from, to) = KNOB;
+        let (from, to) = KNOB_STEM;
         let line = vec![
-            place + way * from * LENGTH as f32,
-            place + way * to * LENGTH as f32,
+            place + diagonal * from * ARROW_LENGTH as f32,
+            place + diagonal * to * ARROW_LENGTH as f32,
         ];
         add(Handle::Size, Some(line));
     }
@@ -215,25 +215,28 @@ fn is_mesh(subject: &Movable) -> bool {
 }
 
 /// Adds the handles that only this kind of item has.
-fn own_handles(
+fn shape_handles(
     screen: &Screen,
     subject: &Movable,
     length: f64,
     add: &mut impl FnMut(Handle, Option<Vec<Pos2>>),
 ) {
     let normal = |from: DVec3, normal: DVec3| {
-        let tip = from + normal.normalize_or_zero() * length * RING;
+        let tip = from + normal.normalize_or_zero() * length * RING_RADIUS;
         Some(vec![screen.place(from)?, screen.place(tip)?])
     };
     match subject {
         Movable::Light(_, light) => {
             let radius = light.marker.as_ref().map(|marker| marker.radius);
-            let line = radius.map(|radius| rim(screen, light.position, radius));
+            let line = radius.map(|radius| sphere_outline(screen, light.position, radius));
             add(Handle::Radius, line);
         }
         Movable::Object(_, object) => match &object.shape {
             Shape::Sphere(ball) => {
-                add(Handle::Radius, Some(rim(screen, ball.center, ball.radius)));
+                add(
+                    Handle::Radius,
+                    Some(sphere_outline(screen, ball.center, ball.radius)),
+                );
             }
             Shape::Disc(disc) => {
                 let axis = disc.normal.normalize_or(DVec3::Y);
@@ -257,23 +260,23 @@ fn own_handles(
 pub fn handle_at(screen: &Screen, selected: &Selection, scene: &Scene, at: Pos2) -> Option<Handle> {
     let drawn = handles(screen, selected, scene);
     let near = drawn.iter().map(|drawn| (drawn.distance(at), drawn.handle));
-    let near = near.filter(|(distance, _)| *distance <= REACH);
+    let near = near.filter(|(distance, _)| *distance <= GRAB_DISTANCE);
     near.min_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, handle)| handle)
 }
 
 /// Draws the handles, with the hovered or dragged one highlighted.
-pub fn show(painter: &Painter, screen: &Screen, editor: &Editor, meant: Option<Handle>) {
+pub fn show(painter: &Painter, screen: &Screen, editor: &Editor, highlighted: Option<Handle>) {
     let colors = palette(painter.ctx());
     let (selected, scene) = (editor.selection(), editor.shown());
-    for Drawn { handle, line } in handles(screen, selected, scene) {
-        let is_meant = meant == Some(handle);
+    for DrawnHandle { handle, line } in handles(screen, selected, scene) {
+        let is_highlighted = highlighted == Some(handle);
         let color = match handle {
-            _ if is_meant => colors.accent,
+            _ if is_highlighted => colors.accent,
             Handle::Along(axis) | Handle::Across(axis) | Handle::Turn(axis) => colors.axes[axis],
             _ => colors.on_picture,
         };
-        let width = if is_meant { 3.0 } else { 2.0 };
+        let width = if is_highlighted { 3.0 } else { 2.0 };
         draw(painter, (handle, &line), Stroke::new(width, color));
     }
 }
@@ -299,7 +302,7 @@ fn draw(painter: &Painter, (handle, line): (Handle, &[Pos2]), stroke: Stroke) {
             for stroke in [halo, stroke] {
                 painter.line_segment([*from, *to], stroke);
             }
-            let knob = egui::Rect::from_center_size(*to, egui::Vec2::splat(KNOB_REACH * 2.0));
+            let knob = egui::Rect::from_center_size(*to, egui::Vec2::splat(KNOB_HALF_SIDE * 2.0));
             let edge = Stroke::new(1.0, halo.color);
             painter.rect(knob, 1, stroke.color, edge, StrokeKind::Outside);
         }
@@ -317,7 +320,11 @@ fn draw(painter: &Painter, (handle, line): (Handle, &[Pos2]), stroke: Stroke) {
 fn arrow_head(painter: &Painter, from: Pos2, to: Pos2, color: Color32, halo: Color32) {
     let along = (to - from).normalized();
     let across = vec2(-along.y, along.x);
-    let tip = vec![to + along * HEAD, to + across * 5.0, to - across * 5.0];
+    let tip = vec![
+        to + along * HEAD_LENGTH,
+        to + across * 5.0,
+        to - across * 5.0,
+    ];
     painter.add(egui::Shape::convex_polygon(
         tip,
         color,
@@ -333,8 +340,8 @@ pub fn label(painter: &Painter, at: Pos2, words: &str) {
     let corner = at + vec2(2.0 * GRID, 2.0 * GRID);
     let rect = egui::Rect::from_min_size(corner, text.size()).expand2(vec2(6.0, 3.0));
     // Kept within the picture.
-    let off = (painter.clip_rect().max - rect.max).min(egui::Vec2::ZERO);
-    let rect = rect.translate(off);
+    let overflow = (painter.clip_rect().max - rect.max).min(egui::Vec2::ZERO);
+    let rect = rect.translate(overflow);
     painter.rect(
         rect,
         4,

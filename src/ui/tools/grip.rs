@@ -5,17 +5,17 @@ use std::cell::Cell;
 use egui::{Painter, Pos2};
 use glam::DVec3;
 
-use super::gizmo::{AXES, Handle, LENGTH, RING, label};
+use super::gizmo::{ARROW_LENGTH, AXES, Handle, RING_RADIUS, label};
 use super::screen::Screen;
-use super::subject::{Movable, together};
+use super::subject::{Movable, combine};
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
 use crate::ui::number::read_number;
 
 /// Angle to which rotations snap, in degrees.
-const DEGREES: f64 = 15.0;
+const SNAP_DEGREES: f64 = 15.0;
 /// Movement along an axis below this fraction of the whole movement counts as none.
-const STILL: f64 = 1e-9;
+const NEGLIGIBLE_SHARE: f64 = 1e-9;
 
 /// A handle that is being dragged.
 #[derive(Clone, Debug)]
@@ -26,11 +26,11 @@ pub struct Grip {
     /// The centre of rotation and scaling.
     middle: DVec3,
     /// Where it was grabbed: on the screen, and in the scene.
-    from: (Pos2, DVec3),
+    grabbed_at: (Pos2, DVec3),
     /// A number typed instead of moving the pointer.
     pub typed: String,
     /// Last rotation in degrees, counting full turns.
-    turned: Cell<f64>,
+    turned_degrees: Cell<f64>,
 }
 
 /// The pointer's input to a drag.
@@ -56,23 +56,23 @@ impl Grip {
             handle,
             before,
             middle,
-            from: (at, middle),
+            grabbed_at: (at, middle),
             typed: String::new(),
-            turned: Cell::default(),
+            turned_degrees: Cell::default(),
         };
-        grip.from.1 = grip.pointed_at(screen, at)?;
+        grip.grabbed_at.1 = grip.pointed_at(screen, at)?;
         Some(grip)
     }
 
     /// Grabs the items themselves, with this centre of rotation, at a point of one of them.
-    pub fn body((before, middle): (Vec<Movable>, DVec3), at: Pos2, point: DVec3) -> Self {
+    pub fn free((before, middle): (Vec<Movable>, DVec3), at: Pos2, point: DVec3) -> Self {
         Self {
             handle: Handle::Free,
             before,
             middle,
-            from: (at, point),
+            grabbed_at: (at, point),
             typed: String::new(),
-            turned: Cell::default(),
+            turned_degrees: Cell::default(),
         }
     }
 
@@ -85,12 +85,12 @@ impl Grip {
     }
 
     /// Describes what is wrong with the typed text, if anything.
-    pub fn wrong(&self) -> Option<String> {
+    pub fn typing_error(&self) -> Option<String> {
         let is_size = matches!(self.handle, Handle::Radius | Handle::Size);
         match read_number(&self.typed) {
-            None => Some(format!("{} is no number yet", self.typed)),
+            None => Some(format!("{} is not a number yet", self.typed)),
             Some(number) if is_size && number <= 0.0 => {
-                Some(format!("{} is not above 0", self.typed))
+                Some(format!("{} is not greater than 0", self.typed))
             }
             Some(_) => None,
         }
@@ -103,7 +103,7 @@ impl Grip {
 
     /// The point in the scene that a screen position means for this handle.
     fn pointed_at(&self, screen: &Screen, at: Pos2) -> Option<DVec3> {
-        let held = self.from.1;
+        let grab_point = self.grabbed_at.1;
         match self.handle {
             Handle::Along(axis) => {
                 let direction = AXES[axis].0;
@@ -112,15 +112,15 @@ impl Grip {
             Handle::Across(axis) | Handle::Turn(axis) => {
                 screen.on_plane(at, self.middle, AXES[axis].0)
             }
-            Handle::Free | Handle::Normal => screen.on_plane(at, held, screen.forward()),
+            Handle::Free | Handle::Normal => screen.on_plane(at, grab_point, screen.forward()),
             Handle::Corner(corner) => screen.on_plane(at, self.corner(corner)?, screen.forward()),
-            Handle::Radius | Handle::Size => Some(held),
+            Handle::Radius | Handle::Size => Some(grab_point),
         }
     }
 
     /// The point whose coordinates are rounded: that of a single item as it is stored in the file, otherwise the
     /// centre.
-    fn place(&self) -> DVec3 {
+    fn snap_point(&self) -> DVec3 {
         match &self.before[..] {
             [only] => only.position(),
             _ => self.middle,
@@ -144,36 +144,36 @@ impl Grip {
             Handle::Along(axis) => {
                 let (direction, name) = AXES[axis];
                 let to = self.pointed_at(screen, pull.at)?;
-                let mut place = self.place();
-                let start = place[axis];
-                let pulled = (to - self.from.1).dot(direction);
-                place[axis] = typed.map_or_else(|| round(start + pulled), |by| start + by);
-                let words = format!("{name} {}", signed(place[axis] - start));
-                Some((self.move_to(place), words))
+                let mut target = self.snap_point();
+                let start = target[axis];
+                let pulled = (to - self.grabbed_at.1).dot(direction);
+                target[axis] = typed.map_or_else(|| round(start + pulled), |by| start + by);
+                let words = format!("{name} {}", format_signed(target[axis] - start));
+                Some((self.move_to(target), words))
             }
             Handle::Across(_) | Handle::Free => {
                 let to = if pull.is_level && self.handle == Handle::Free {
-                    screen.on_plane(pull.at, self.from.1, DVec3::Y)?
+                    screen.on_plane(pull.at, self.grabbed_at.1, DVec3::Y)?
                 } else {
                     self.pointed_at(screen, pull.at)?
                 };
-                let by = to - self.from.1;
-                let fixed = |axis: usize| match self.handle {
+                let by = to - self.grabbed_at.1;
+                let is_fixed = |axis: usize| match self.handle {
                     Handle::Across(across) => across == axis,
                     _ => pull.is_level && axis == 1,
                 };
-                let start = self.place();
+                let start = self.snap_point();
                 let part = |axis: usize| {
                     // An axis that points towards the viewer is not moved along: its coordinate is not rounded.
-                    if fixed(axis) || by[axis].abs() <= STILL * by.length() {
+                    if is_fixed(axis) || by[axis].abs() <= NEGLIGIBLE_SHARE * by.length() {
                         start[axis]
                     } else {
                         round(start[axis] + by[axis])
                     }
                 };
-                let place = DVec3::new(part(0), part(1), part(2));
-                let words = (place - start).to_array().map(signed).join(", ");
-                Some((self.move_to(place), words))
+                let target = DVec3::new(part(0), part(1), part(2));
+                let words = (target - start).to_array().map(format_signed).join(", ");
+                Some((self.move_to(target), words))
             }
             Handle::Radius => {
                 let typed = typed.filter(|radius| *radius > 0.0);
@@ -182,12 +182,15 @@ impl Grip {
                 let edit = (radius > 0.0)
                     .then(|| subject.with_radius(radius))
                     .flatten();
-                Some((edit, format!("radius {}", plain(radius))))
+                Some((edit, format!("radius {}", format_value(radius))))
             }
             Handle::Size => {
-                let typed = typed.filter(|times| *times > 0.0);
-                let times = typed.map_or_else(|| self.times(screen, pull), Some)?;
-                Some((self.scale_all(times), format!("× {}", plain(times))))
+                let typed = typed.filter(|scale_factor| *scale_factor > 0.0);
+                let scale_factor = typed.map_or_else(|| self.scale_factor(screen, pull), Some)?;
+                Some((
+                    self.scale_all(scale_factor),
+                    format!("× {}", format_value(scale_factor)),
+                ))
             }
             Handle::Corner(corner) => {
                 let to = self.pointed_at(screen, pull.at)?;
@@ -197,10 +200,10 @@ impl Grip {
                     return None;
                 };
                 *[&mut triangle.a, &mut triangle.b, &mut triangle.c][corner] = to;
-                let words = [to.x, to.y, to.z].map(plain).join(", ");
+                let words = [to.x, to.y, to.z].map(format_value).join(", ");
                 Some((Some(subject.reshaped(triangle.into(), "corner")), words))
             }
-            Handle::Normal => self.face(screen, pull),
+            Handle::Normal => self.turn_normal(screen, pull),
             Handle::Turn(axis) => {
                 let degrees = typed.map_or_else(|| self.degrees(screen, axis, pull), Some)?;
                 let by = (AXES[axis].0, degrees);
@@ -208,38 +211,39 @@ impl Grip {
                     .before
                     .iter()
                     .map(|subject| subject.turned(self.middle, by));
-                let words = format!("{} {}°", AXES[axis].1, signed(degrees));
-                Some((together(edits.collect(), "Turn"), words))
+                let words = format!("{} {}°", AXES[axis].1, format_signed(degrees));
+                Some((combine(edits.collect(), "Rotate"), words))
             }
         }
     }
 
-    /// Moves all items so that [`Self::place`] is at `place`.
-    fn move_to(&self, place: DVec3) -> Option<Edit> {
+    /// Moves all items so that [`Self::snap_point`] is at `target`.
+    fn move_to(&self, target: DVec3) -> Option<Edit> {
         let edits = match &self.before[..] {
-            [only] => vec![only.placed(place)],
+            [only] => vec![only.placed(target)],
             all => {
-                let by = place - self.place();
+                let by = target - self.snap_point();
                 all.iter().map(|subject| subject.moved(by)).collect()
             }
         };
-        together(edits, "Move")
+        combine(edits, "Move")
     }
 
-    fn scale_all(&self, times: f64) -> Option<Edit> {
+    fn scale_all(&self, scale_factor: f64) -> Option<Edit> {
         let edits = self
             .before
             .iter()
-            .map(|subject| subject.scaled(self.middle, times));
-        together(edits.collect(), "Resize")
+            .map(|subject| subject.scaled(self.middle, scale_factor));
+        combine(edits.collect(), "Resize")
     }
 
     /// Ratio of the distances from the middle: of the current screen position to that of the grab.
-    fn times(&self, screen: &Screen, pull: Pull) -> Option<f64> {
+    fn scale_factor(&self, screen: &Screen, pull: Pull) -> Option<f64> {
         let middle = screen.place(self.middle)?;
-        let times = (pull.at - middle).length() / (self.from.0 - middle).length().max(1.0);
+        let scale_factor =
+            (pull.at - middle).length() / (self.grabbed_at.0 - middle).length().max(1.0);
         let parts = if pull.snaps { 10.0 } else { 100.0 };
-        Some((f64::from(times) * parts).round().max(1.0) / parts)
+        Some((f64::from(scale_factor) * parts).round().max(1.0) / parts)
     }
 
     /// Distance of the ray through a screen position from the middle; for a disc, distance of the intersection.
@@ -254,22 +258,22 @@ impl Grip {
 
     fn degrees(&self, screen: &Screen, axis: usize, pull: Pull) -> Option<f64> {
         let to = self.pointed_at(screen, pull.at)? - self.middle;
-        let from = self.from.1 - self.middle;
+        let from = self.grabbed_at.1 - self.middle;
         let direction = AXES[axis].0;
         let degrees = direction
             .dot(from.cross(to))
             .atan2(from.dot(to))
             .to_degrees();
         // Past half a turn, the angle continues instead of jumping back.
-        let rounds = ((self.turned.get() - degrees) / 360.0).round();
-        let degrees = degrees + rounds * 360.0;
-        self.turned.set(degrees);
-        let step = if pull.snaps { DEGREES } else { 0.5 };
+        let full_turns = ((self.turned_degrees.get() - degrees) / 360.0).round();
+        let degrees = degrees + full_turns * 360.0;
+        self.turned_degrees.set(degrees);
+        let step = if pull.snaps { SNAP_DEGREES } else { 0.5 };
         Some((degrees / step).round() * step)
     }
 
     /// Turns the normal towards the pointer's position on a sphere around its base.
-    fn face(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
+    fn turn_normal(&self, screen: &Screen, pull: Pull) -> Option<(Option<Edit>, String)> {
         let subject = self.before.first()?;
         let mut shape = subject.shape()?.clone();
         let (Shape::Plane(Plane { point, normal })
@@ -281,7 +285,7 @@ impl Grip {
         else {
             return None;
         };
-        let length = screen.unit_at(*point) * LENGTH * RING;
+        let length = screen.unit_at(*point) * ARROW_LENGTH * RING_RADIUS;
         let (origin, direction) = screen.ray(pull.at);
         let arm = *point - origin;
         let along = arm.dot(direction);
@@ -297,7 +301,7 @@ impl Grip {
         let step = if pull.snaps { 0.1 } else { 0.001 };
         let to = DVec3::from_array(to.to_array().map(|part| (part / step).round() * step));
         *normal = to;
-        let words = [to.x, to.y, to.z].map(plain).join(", ");
+        let words = [to.x, to.y, to.z].map(format_value).join(", ");
         Some((Some(subject.reshaped(shape, "normal")), words))
     }
 
@@ -306,8 +310,8 @@ impl Grip {
         let words = if self.typed.is_empty() {
             words.to_owned()
         } else {
-            let wrong = self.wrong();
-            wrong.unwrap_or_else(|| format!("{words} (Enter)"))
+            let typing_error = self.typing_error();
+            typing_error.unwrap_or_else(|| format!("{words} (Enter)"))
         };
         label(painter, at, &words);
     }
@@ -332,13 +336,13 @@ fn rounded(value: f64, unit: f64, snaps: bool) -> f64 {
     }
 }
 
-fn plain(value: f64) -> String {
+fn format_value(value: f64) -> String {
     format_number((value * 1e6).round() / 1e6)
 }
 
-fn signed(value: f64) -> String {
+fn format_signed(value: f64) -> String {
     let sign = if value >= 0.0 { "+" } else { "" };
-    format!("{sign}{}", plain(value))
+    format!("{sign}{}", format_value(value))
 }
 
 #[cfg(test)]
@@ -357,20 +361,26 @@ mod tests {
             handle: Handle::Radius,
             before: vec![ball],
             middle: DVec3::ZERO,
-            from: (Pos2::ZERO, DVec3::ZERO),
+            grabbed_at: (Pos2::ZERO, DVec3::ZERO),
             typed: String::new(),
-            turned: Cell::default(),
+            turned_degrees: Cell::default(),
         };
-        let mut wrong = |typed: &str| {
+        let mut typing_error = |typed: &str| {
             grip.typed = typed.to_owned();
-            grip.wrong()
+            grip.typing_error()
         };
-        assert_eq!(wrong("2.5"), None);
-        assert_eq!(wrong("-5").as_deref(), Some("-5 is not above 0"));
-        assert_eq!(wrong("1e").as_deref(), Some("1e is no number yet"));
+        assert_eq!(typing_error("2.5"), None);
+        assert_eq!(
+            typing_error("-5").as_deref(),
+            Some("-5 is not greater than 0")
+        );
+        assert_eq!(
+            typing_error("1e").as_deref(),
+            Some("1e is not a number yet")
+        );
         grip.handle = Handle::Along(0);
         grip.typed = "-5".to_owned();
-        assert_eq!(grip.wrong(), None);
+        assert_eq!(grip.typing_error(), None);
     }
 
     #[test]

@@ -24,8 +24,8 @@ use glam::DVec3;
 
 use self::drag::{Drag, Pane};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{along, dollied, projected};
-use self::seen_objects::{SeenObjects, ends, item_of, pixel, question};
+use self::navigate::{dollied, looking_along, projected};
+use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question};
 use self::subject::Movable;
 use super::commands::Command;
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
@@ -38,15 +38,15 @@ use crate::scene::{Camera, Framing, Projection, around};
 use crate::words::shortened;
 
 /// Seconds that the pointer has to rest before the name of what it hovers is shown.
-const PATIENCE: f32 = 0.3;
+const HOVER_DELAY: f32 = 0.3;
 /// Maximum number of letters of a name beside the pointer.
-const LONGEST: usize = 32;
+const MAX_NAME_LETTERS: usize = 32;
 /// Minimum size of what is framed, as a fraction of the whole scene.
-const LEAST_FRAMED: f64 = 0.02;
+const MIN_FRAMED_SHARE: f64 = 0.02;
 /// Maximum time between the two clicks of a double click, in seconds.
-const TWICE: f64 = 1.0;
+const MAX_DOUBLE_CLICK_SECONDS: f64 = 1.0;
 /// Maximum distance between two clicks that count as being at the same place, in points.
-const SAME_PLACE: f32 = 4.0;
+const SAME_POSITION_DISTANCE: f32 = 4.0;
 
 /// The state of the tools between frames.
 #[derive(Default)]
@@ -138,34 +138,34 @@ impl Tools {
         // During playback and through the shot camera, a drag would set a key in every frame.
         let has_gizmo = !(editor.looks_through() || editor.timeline().is_playing);
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
-        let meant = hovered
+        let target_handle = hovered
             .filter(|_| has_gizmo)
             .and_then(|at| handle_at(&view.screen, editor.selection(), editor.shown(), at));
         self.start(ui, &view, response, has_gizmo, out);
-        let show_gizmo = |meant| {
+        let show_gizmo = |target_handle| {
             if has_gizmo {
-                gizmo::show(&view.painter, &view.screen, editor, meant);
+                gizmo::show(&view.painter, &view.screen, editor, target_handle);
             }
         };
         if let Some(drag) = &mut self.drag {
             // Drawn before the value beside the pointer, which covers it.
             show_gizmo(drag.handle());
-            if !drag.go_on(ui, &view, &self.seen_objects, response, out) {
+            if !drag.advance(ui, &view, &self.seen_objects, response, out) {
                 self.drag = None;
             }
         } else {
             // Drawn before the name beside the pointer, which covers it.
-            show_gizmo(meant);
-            self.hover(ui, &view, hovered, meant);
+            show_gizmo(target_handle);
+            self.hover(ui, &view, hovered, target_handle);
         }
         if self.drag.is_none() {
             self.turn_wheel(&view, response, wheel, out);
         }
         self.show_menu(ui, &view, response, out);
-        let waits = matches!(self.drag, Some(Drag::Undecided(..))) || self.menu_waits;
-        if waits || (!is_busy && self.drag.is_none()) {
+        let needs_map = matches!(self.drag, Some(Drag::Undecided(..))) || self.menu_waits;
+        if needs_map || (!is_busy && self.drag.is_none()) {
             out.questions
-                .extend(self.seen_objects.wanted(editor, place));
+                .extend(self.seen_objects.request_map(editor, place));
         }
         if !is_busy && self.drag.is_none() {
             self.wheel = None;
@@ -175,7 +175,8 @@ impl Tools {
         let is_second = response.double_clicked() && modifiers.is_none();
         // The first of two clicks may have hit something in front of the picture that is gone by now, or may still
         // be pending.
-        let is_first_done = now - self.clicked_at < TWICE && self.click.is_none();
+        let is_first_done =
+            now - self.clicked_at < MAX_DOUBLE_CLICK_SECONDS && self.click.is_none();
         if response.clicked() && (!is_second || is_first_done) {
             let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
             self.click = at.map(|at| (at, modifiers, revision));
@@ -233,7 +234,7 @@ impl Tools {
             ui.separator();
             // The current selection may be another item.
             if self.menu_waits {
-                ui.weak("Looking what is here");
+                ui.weak("Looking up what is here");
             } else {
                 for (text, command) in ITEM_COMMANDS {
                     offer(ui, view.editor, text, command, out);
@@ -242,7 +243,7 @@ impl Tools {
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, out);
             for (text, command) in [
-                ("Frame what is selected", Command::FrameSelected),
+                ("Frame selection", Command::FrameSelected),
                 ("Frame everything", Command::FrameAll),
             ] {
                 entry(ui, text, command, out);
@@ -282,12 +283,12 @@ impl Tools {
     }
 
     /// Shows what the pointer is over.
-    fn hover(&mut self, ui: &Ui, view: &Pane, at: Option<Pos2>, meant: Option<Handle>) {
+    fn hover(&mut self, ui: &Ui, view: &Pane, at: Option<Pos2>, target_handle: Option<Handle>) {
         let seen = at.and_then(|at| self.seen_objects.at(view.editor, view.place.rect, at));
-        let item = seen.map(item_of).filter(|_| meant.is_none());
+        let item = seen.map(item_of).filter(|_| target_handle.is_none());
         // An outline of the floor would surround everything that stands on it.
-        let outlined = seen.filter(|thing| ends(view.editor.shown(), *thing));
-        let outlined = outlined.map(item_of).filter(|_| meant.is_none());
+        let outlined = seen.filter(|thing| is_finite(view.editor.shown(), *thing));
+        let outlined = outlined.map(item_of).filter(|_| target_handle.is_none());
         let (scene, selected) = (view.editor.scene(), view.editor.selection());
         let outlined = outlined.map(|item| selected.picked(scene, &[item]));
         let group = outlined.as_ref().and_then(|picked| picked.group(scene));
@@ -298,22 +299,22 @@ impl Tools {
             view.place.rect,
             outlined.to_vec(),
         );
-        if meant.is_some() {
+        if target_handle.is_some() {
             ui.set_cursor_icon(CursorIcon::Grab);
         }
         let name = group.or_else(|| item?.name(scene));
-        let (is_down, rests) = ui.input(|input| {
-            let rests = input.pointer.time_since_last_movement();
-            (input.pointer.any_down(), rests)
+        let (is_down, idle_seconds) = ui.input(|input| {
+            let idle_seconds = input.pointer.time_since_last_movement();
+            (input.pointer.any_down(), idle_seconds)
         });
         let is_covered = is_down || Popup::is_any_open(ui.ctx());
         let Some((at, name)) = at.zip(name).filter(|_| !is_covered) else {
             return;
         };
-        if rests >= PATIENCE {
-            label(&view.painter, at, &shortened(name, LONGEST));
+        if idle_seconds >= HOVER_DELAY {
+            label(&view.painter, at, &shortened(name, MAX_NAME_LETTERS));
         } else {
-            ui.request_repaint_after_secs(PATIENCE - rests);
+            ui.request_repaint_after_secs(HOVER_DELAY - idle_seconds);
         }
     }
 
@@ -322,7 +323,7 @@ impl Tools {
         let Some(at) = at else { return };
         let known = self
             .wheel
-            .filter(|(before, _)| (*before - at).length() < SAME_PLACE);
+            .filter(|(before, _)| (*before - at).length() < SAME_POSITION_DISTANCE);
         let point = known.map_or_else(|| view.point_at(&self.seen_objects, at), |(_, point)| point);
         self.wheel = Some((at, point));
         let camera = dollied(&view.editor.shown().camera, point, wheel);
@@ -364,8 +365,8 @@ impl Tools {
         let Some(first) = seen else { return };
         let revision = view.editor.shown_revision();
         let known = self.behind.take().filter(|(before, of, things)| {
-            let is_there = (*before - at).length() < SAME_PLACE && *of == revision;
-            is_there && things.first() == Some(&first)
+            let is_same_click = (*before - at).length() < SAME_POSITION_DISTANCE && *of == revision;
+            is_same_click && things.first() == Some(&first)
         });
         let (at, _, before) = known.unwrap_or((at, revision, vec![first]));
         out.questions
@@ -383,14 +384,14 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
     let (low, high) = bounds.filter(|_| only_selected).or(all)?;
     // A light without a marker is a point: show some of its surroundings.
     let size = all.map_or(0.0, |(low, high)| (high - low).length());
-    let least = match (low != high, size > 0.0) {
+    let margin = match (low != high, size > 0.0) {
         (true, _) => 0.0,
-        (false, true) => size * LEAST_FRAMED,
+        (false, true) => size * MIN_FRAMED_SHARE,
         (false, false) => 1.0,
     };
-    let least = DVec3::splat(least);
+    let margin = DVec3::splat(margin);
     let middle = low * 0.5 + high * 0.5;
-    let bounds = (low.min(middle - least), high.max(middle + least));
+    let bounds = (low.min(middle - margin), high.max(middle + margin));
     Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
 }
 
@@ -416,11 +417,11 @@ pub fn is_selected_unseen(editor: &Editor) -> bool {
 /// a point on it and the unit normal that points inwards.
 fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
     let (x, y) = (aspect / 2.0, 0.5);
-    let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|place| framing.ray(place));
+    let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|corner| framing.ray(corner));
     let (middle, forward) = framing.ray([0.0, 0.0]);
     let side = |n: usize| {
-        let ((a, along), (b, beside)) = (corners[n], corners[(n + 1) % 4]);
-        let normal = along.cross(b + beside - a).normalize_or_zero();
+        let ((a, direction), (b, next_direction)) = (corners[n], corners[(n + 1) % 4]);
+        let normal = direction.cross(b + next_direction - a).normalize_or_zero();
         let is_inwards = normal.dot(middle + forward - a) > 0.0;
         (a, if is_inwards { normal } else { -normal })
     };
@@ -429,7 +430,7 @@ fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
 
 /// The camera that looks along a direction at the selection, or at everything.
 pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
-    along(&editor.shown().camera, editor.middle(), direction)
+    looking_along(&editor.shown().camera, editor.middle(), direction)
 }
 
 /// The camera with another projection, in which the middle of the scene appears about as large as before.

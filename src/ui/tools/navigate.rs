@@ -11,10 +11,10 @@ const ORBIT: f64 = 0.008;
 /// Relative change of the distance per point of wheel movement.
 const DOLLY: f64 = 0.003;
 /// Factor by which a change of projection may change the apparent size.
-const MUCH: f64 = 3.0;
+const MAX_SIZE_CHANGE: f64 = 3.0;
 
 /// Rotation of an orbit, to the right and upwards, for a mouse movement: things follow the pointer.
-pub fn turn(moved: Vec2) -> (f64, f64) {
+pub fn orbit_angles(moved: Vec2) -> (f64, f64) {
     (-f64::from(moved.x) * ORBIT, -f64::from(moved.y) * ORBIT)
 }
 
@@ -47,7 +47,7 @@ pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
 }
 
 /// The camera that looks at the same middle from the same distance, but along another direction.
-pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
+pub fn looking_along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     let distance = (about - camera.position).length();
     let is_steep = direction.y.abs() > 0.5;
     Camera {
@@ -58,8 +58,9 @@ pub fn along(camera: &Camera, about: DVec3, direction: DVec3) -> Camera {
     }
 }
 
-/// The camera with another projection. If things at the depth of `about` would change their size by `MUCH` or
-/// more, they keep their size instead; smaller differences stay, as the user chose the parameters that cause them.
+/// The camera with another projection. If things at the depth of `about` would change their size by
+/// `MAX_SIZE_CHANGE` or more, they keep their size instead; smaller differences stay, as the user chose the
+/// parameters that cause them.
 pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) -> Camera {
     let mut next = Camera {
         projection,
@@ -70,13 +71,13 @@ pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) 
     let Some(depth) = depth.filter(|depth| 0.0 < *depth && projection != camera.projection) else {
         return next;
     };
-    let as_far = camera.orthographic_height * camera.projection_distance;
-    if (as_far / depth).ln().abs() < MUCH.ln() {
+    let equal_size_depth = camera.orthographic_height * camera.projection_distance;
+    if (equal_size_depth / depth).ln().abs() < MAX_SIZE_CHANGE.ln() {
         return next;
     }
     match projection {
         Projection::Orthographic => next.orthographic_height = depth / camera.projection_distance,
-        Projection::Perspective => next.position += forward * (depth - as_far),
+        Projection::Perspective => next.position += forward * (depth - equal_size_depth),
     }
     next
 }
@@ -176,7 +177,11 @@ mod tests {
     fn views_along_axes_have_a_basis() {
         let camera = Camera::default();
         for direction in [DVec3::NEG_Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Y] {
-            assert!(along(&camera, DVec3::ZERO, direction).basis().is_some());
+            assert!(
+                looking_along(&camera, DVec3::ZERO, direction)
+                    .basis()
+                    .is_some()
+            );
         }
     }
 }

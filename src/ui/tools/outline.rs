@@ -7,9 +7,9 @@ use egui::{Color32, ColorImage};
 use crate::image::{ObjectMap, Thing};
 
 /// Width of an outline, in pixels.
-const LINE: usize = 2;
+const LINE_WIDTH: usize = 2;
 /// Width of the dark edge around the outline, in pixels, which keeps it visible on any picture.
-const HALO: usize = 1;
+const HALO_WIDTH: usize = 1;
 
 /// The part of the picture that contains an outline.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct PixelObject {
     /// Whether it belongs to the outlined things.
     pub is_wanted: bool,
     /// Whether it is finite. Infinite things count as being behind all finite ones.
-    pub ends: bool,
+    pub is_finite: bool,
 }
 
 /// Draws an outline and its edge around everything that is wanted; `None` if nothing of it is visible. The outline
@@ -36,33 +36,33 @@ pub fn outline(
     (color, halo): (Color32, Color32),
     seen: impl Fn(Thing) -> PixelObject,
 ) -> Option<OutlineImage> {
-    let (inside, columns, rows) = silhouette(map, seen)?;
-    let reach = LINE + HALO;
+    let (objects, columns, rows) = silhouette(map, seen)?;
+    let reach = LINE_WIDTH + HALO_WIDTH;
     let columns = columns.start.saturating_sub(reach)..(columns.end + reach).min(map.width());
     let rows = rows.start.saturating_sub(reach)..(rows.end + reach).min(map.height());
     let (width, size) = (map.width(), [columns.len(), rows.len()]);
     let mut distances = vec![usize::MAX; size[0] * size[1]];
     for row in rows.clone() {
         for column in columns.clone() {
-            if is_border(&inside, width, column, row) {
-                let own = inside[row * width + column];
+            if is_border(&objects, width, column, row) {
+                let border_object = objects[row * width + column];
                 let at = [column - columns.start, row - rows.start];
                 let is_free = |[column, row]: [usize; 2]| {
                     let there = (row + rows.start) * width + column + columns.start;
-                    own.ends || !inside[there].ends
+                    border_object.is_finite || !objects[there].is_finite
                 };
                 spread(&mut distances, size, at, is_free);
             }
         }
     }
     let pixels = rows.clone().flat_map(|row| {
-        let inside = &inside[row * width + columns.start..row * width + columns.end];
+        let objects = &objects[row * width + columns.start..row * width + columns.end];
         let distances = &distances[(row - rows.start) * size[0]..][..size[0]];
-        inside.iter().zip(distances).map(move |(seen, &distance)| {
-            let far = LINE + HALO;
+        objects.iter().zip(distances).map(move |(seen, &distance)| {
+            let far = LINE_WIDTH + HALO_WIDTH;
             match distance {
                 _ if seen.is_wanted => Color32::TRANSPARENT,
-                distance if distance <= LINE * LINE => color,
+                distance if distance <= LINE_WIDTH * LINE_WIDTH => color,
                 distance if distance <= far * far => halo,
                 _ => Color32::TRANSPARENT,
             }
@@ -79,7 +79,7 @@ fn silhouette(
     map: &ObjectMap,
     seen: impl Fn(Thing) -> PixelObject,
 ) -> Option<(Vec<PixelObject>, Range<usize>, Range<usize>)> {
-    let mut inside = Vec::with_capacity(map.width() * map.height());
+    let mut objects = Vec::with_capacity(map.width() * map.height());
     let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
     // Neighbouring pixels mostly show the same thing.
     let mut last = (None, PixelObject::default());
@@ -88,31 +88,32 @@ fn silhouette(
             if thing != last.0 {
                 last = (thing, thing.map_or(PixelObject::default(), &seen));
             }
-            inside.push(last.1);
+            objects.push(last.1);
             if last.1.is_wanted {
                 low = [low[0].min(column), low[1].min(row)];
                 high = [high[0].max(column + 1), row + 1];
             }
         }
     }
-    (high[0] > 0).then(|| (inside, low[0]..high[0], low[1]..high[1]))
+    (high[0] > 0).then(|| (objects, low[0]..high[0], low[1]..high[1]))
 }
 
 /// Returns whether a pixel is wanted and has a neighbour that is neither wanted nor in front of it.
-fn is_border(inside: &[PixelObject], width: usize, column: usize, row: usize) -> bool {
+fn is_border(objects: &[PixelObject], width: usize, column: usize, row: usize) -> bool {
     let at = row * width + column;
-    let own = inside[at];
-    let is_end = |there: &PixelObject| !there.is_wanted && (own.ends || !there.ends);
-    let is_out = |index: Option<usize>| {
+    let border_object = objects[at];
+    let is_outside =
+        |there: &PixelObject| !there.is_wanted && (border_object.is_finite || !there.is_finite);
+    let is_outside_at = |index: Option<usize>| {
         index
-            .and_then(|index| inside.get(index))
-            .is_some_and(is_end)
+            .and_then(|index| objects.get(index))
+            .is_some_and(is_outside)
     };
-    own.is_wanted
-        && (is_out(at.checked_sub(width))
-            || is_out(at.checked_add(width))
-            || (column > 0 && is_end(&inside[at - 1]))
-            || (column + 1 < width && is_end(&inside[at + 1])))
+    border_object.is_wanted
+        && (is_outside_at(at.checked_sub(width))
+            || is_outside_at(at.checked_add(width))
+            || (column > 0 && is_outside(&objects[at - 1]))
+            || (column + 1 < width && is_outside(&objects[at + 1])))
 }
 
 /// Lowers the squared distances around a border pixel where they are greater, in the pixels that are free.
@@ -122,7 +123,7 @@ fn spread(
     at: [usize; 2],
     is_free: impl Fn([usize; 2]) -> bool,
 ) {
-    let reach = LINE + HALO;
+    let reach = LINE_WIDTH + HALO_WIDTH;
     let around =
         |middle: usize, count: usize| middle.saturating_sub(reach)..(middle + reach + 1).min(count);
     for row in around(at[1], size[1]) {
@@ -157,7 +158,7 @@ mod tests {
         let seen = |wanted: Thing| {
             move |thing: Thing| PixelObject {
                 is_wanted: thing == wanted,
-                ends: thing != floor,
+                is_finite: thing != floor,
             }
         };
         let found = outline(&map, colors, seen(ball)).expect("it is seen");

@@ -33,8 +33,9 @@ impl Screen {
 
     /// Origin and unit direction of the ray through a screen position.
     pub fn ray(&self, at: Pos2) -> (DVec3, DVec3) {
-        let off = (at - self.view.center()) / self.view.height();
-        self.framing.ray([f64::from(off.x), f64::from(-off.y)])
+        let offset = (at - self.view.center()) / self.view.height();
+        self.framing
+            .ray([f64::from(offset.x), f64::from(-offset.y)])
     }
 
     /// The viewing direction of the camera.

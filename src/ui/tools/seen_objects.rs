@@ -19,9 +19,9 @@ use crate::worker::Question;
 pub struct SeenObjects {
     map: Option<(u64, ObjectMap)>,
     /// Revision and size of the picture that was last asked about.
-    asked: Option<(u64, (u32, u32))>,
+    requested: Option<(u64, (u32, u32))>,
     /// The outlines of the selection, and of what is hovered.
-    lines: [OutlineTextures; 2],
+    outlines: [OutlineTextures; 2],
 }
 
 /// An outline as a texture.
@@ -43,12 +43,12 @@ pub fn item_of(thing: Thing) -> Item {
 
 impl SeenObjects {
     /// Returns the question which objects are seen in the picture at `place`, unless it was already asked.
-    pub fn wanted(&mut self, editor: &Editor, place: Place) -> Option<Question> {
+    pub fn request_map(&mut self, editor: &Editor, place: Place) -> Option<Question> {
         let wanted = (editor.shown_revision(), place.pixels);
-        if self.asked == Some(wanted) {
+        if self.requested == Some(wanted) {
             return None;
         }
-        self.asked = Some(wanted);
+        self.requested = Some(wanted);
         Some(question(editor, place, Vec::new()))
     }
 
@@ -56,8 +56,8 @@ impl SeenObjects {
     pub fn take(&mut self, revision: u64, map: ObjectMap) {
         self.map = Some((revision, map));
         // The outlines are stored in pixels of the map, whose size may have changed.
-        for lines in &mut self.lines {
-            lines.made_for = None;
+        for outline in &mut self.outlines {
+            outline.made_for = None;
         }
     }
 
@@ -94,7 +94,7 @@ impl SeenObjects {
                 }
             }
         }
-        found.retain(|thing| ends(editor.scene(), *thing));
+        found.retain(|thing| is_finite(editor.scene(), *thing));
         found.into_iter().map(item_of).collect()
     }
 
@@ -108,19 +108,19 @@ impl SeenObjects {
         }
         let colors = palette(painter.ctx());
         let selected = editor.selection().items().to_vec();
-        let own: HashSet<&Item> = selected.iter().collect();
-        hovered.retain(|item| !own.contains(item));
+        let selected_set: HashSet<&Item> = selected.iter().collect();
+        hovered.retain(|item| !selected_set.contains(item));
         let wanted = [(colors.accent, selected), (colors.text, hovered)];
-        for (lines, (color, items)) in self.lines.iter_mut().zip(wanted) {
+        for (outline, (color, items)) in self.outlines.iter_mut().zip(wanted) {
             let wanted = (*revision, color, items);
-            lines.update(painter.ctx(), (map, editor.shown()), wanted);
-            lines.show(painter, map, view);
+            outline.update(painter.ctx(), (map, editor.shown()), wanted);
+            outline.show(painter, map, view);
         }
     }
 }
 
 /// Returns whether a thing is finite.
-pub fn ends(scene: &Scene, thing: Thing) -> bool {
+pub fn is_finite(scene: &Scene, thing: Thing) -> bool {
     match thing {
         Thing::Object(index) => {
             let object = scene.objects.get(index);
@@ -168,7 +168,7 @@ impl OutlineTextures {
             let colors = (*color, palette(ctx).halo);
             outline(map, colors, |thing| PixelObject {
                 is_wanted: all.contains(&item_of(thing)),
-                ends: ends(scene, thing),
+                is_finite: is_finite(scene, thing),
             })
         });
         self.shown = made.flatten().map(|outline| {

@@ -101,7 +101,7 @@ impl Movable {
                     Shape::Mesh(mesh) => mesh.turned_by(about, (axis, degrees)).into(),
                     shape => shape.turned(about, by),
                 };
-                self.reshaped(turned, "turn")
+                self.reshaped(turned, "rotate")
             }
             Self::Light(_, light) => {
                 self.moved(by * (light.position - about) + about - light.position)
@@ -160,7 +160,7 @@ impl Movable {
 }
 
 /// Combines edits into one; a single edit stays as it is.
-pub fn together(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
+pub fn combine(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
     match edits.len() {
         0 => None,
         1 => edits.pop(),

@@ -70,7 +70,7 @@ fn a_file_that_is_there_is_replaced_once_that_is_meant() {
     harness.type_name("Path (this desktop offers no file dialog)", text);
     harness
         .window
-        .get_by_label_contains("is there already. Replace it?");
+        .get_by_label_contains("already exists. Replace it?");
     let held = || std::fs::read_to_string(&path).expect("read");
     assert_eq!(held(), "theirs");
     harness.click("Replace it");
@@ -134,7 +134,7 @@ fn a_picture_in_an_unknown_format_is_asked_about_again() {
     harness.press(Modifiers::COMMAND, Key::E);
     harness
         .window
-        .get_by_label("Its name has to end in one of these: .png, .ppm, .exr");
+        .get_by_label("The file name must end in one of these: .png, .ppm, .exr");
     let folder = harness.folder.path().to_owned();
     let path = folder.join("picture.PNG");
     harness.type_name("Path", path.to_str().expect("plain"));
@@ -253,7 +253,7 @@ fn a_model_in_other_units_says_how_large_it_is() {
         harness.wait_for("the model", |harness| {
             harness.scene().objects.len() > Scene::demo().objects.len()
         });
-        let words = format!("they are {reach} units large, where the scene is");
+        let words = format!("they measure {reach} units, the scene");
         assert_eq!(harness.sees(&words), is_odd, "{reach}");
         harness.press(CTRL, Key::Z);
         assert_eq!(harness.scene(), &Scene::demo());
@@ -388,10 +388,10 @@ fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imp
         assert!(is_seen, "{corner:?}: {place:?}");
     }
     assert_eq!(harness.scene().objects.len(), 2);
-    harness.window.get_by_label_contains("near.obj; F brings");
+    harness.window.get_by_label_contains("near.obj; F frames");
     // The camera stays where the first import put it, and is undone with that import.
     harness.press(Modifiers::COMMAND, Key::Z);
-    let told = harness.window.query_by_label_contains("near.obj; F brings");
+    let told = harness.window.query_by_label_contains("near.obj; F frames");
     assert!(told.is_none(), "it is undone");
     assert_ne!(harness.scene().camera, before.camera);
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -425,9 +425,7 @@ fn an_import_that_no_camera_can_see_whole_is_made_all_the_same() {
     harness.drop_file(path);
     assert_eq!(harness.scene().objects.len(), 1);
     assert_eq!(harness.scene().camera, before);
-    harness
-        .window
-        .get_by_label_contains("F brings them into the picture");
+    harness.window.get_by_label_contains("F frames them");
 }
 
 #[test]
@@ -630,7 +628,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     let roof = folder.join("roof.obj");
     let good = std::fs::read(&roof).expect("there");
     let time = std::fs::metadata(&roof).expect("there").modified();
-    let is_told = |harness: &EditorHarness| harness.sees("what was read of it before stays");
+    let is_told = |harness: &EditorHarness| harness.sees("the version read before is kept");
     std::fs::write(&roof, "f 1 2 3\n").expect("written");
     harness.wait_for("the message", is_told);
     std::fs::write(&roof, good).expect("written");
@@ -647,7 +645,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.press(CTRL, Key::S);
     harness
         .window
-        .get_by_label_contains("what was in roof.obj is in the scene file now");
+        .get_by_label_contains("the contents of roof.obj are in the scene file now");
     let saved = |harness: &EditorHarness| {
         let path = harness.folder.path().join("given.ron");
         Document::load(&path).expect("valid").scene == **harness.editor().scene()
@@ -733,9 +731,7 @@ fn a_file_that_is_gone_is_told_and_what_is_open_counts_as_unsaved() {
     let path = harness.folder.path().join("given.ron");
     let elsewhere = harness.folder.path().join("moved.ron");
     let is_told = |harness: &EditorHarness| {
-        let told = harness
-            .window
-            .query_by_label_contains("is not there any more");
+        let told = harness.window.query_by_label_contains("no longer exists");
         told.is_some()
     };
     std::fs::rename(&path, &elsewhere).expect("moved");
@@ -764,11 +760,11 @@ fn a_file_that_another_program_has_broken_is_told_and_what_is_open_counts_as_uns
     assert!(harness.editor().is_dirty());
     // It is deleted, which replaces the message; and then valid again.
     std::fs::remove_file(&path).expect("removed");
-    harness.wait_for("the message", |harness| harness.sees("not there any more"));
+    harness.wait_for("the message", |harness| harness.sees("no longer exists"));
     assert!(!harness.sees("given.ron:1"));
     std::fs::write(&path, demo_text(20.0)).expect("written");
     harness.wait_for("the file again", |harness| !harness.editor().is_dirty());
-    assert!(!harness.sees("not there any more"));
+    assert!(!harness.sees("no longer exists"));
 }
 
 #[test]

@@ -151,7 +151,7 @@ fn the_inspector_says_what_the_scene_needs() {
         .get_by_label("reflected rays, up to 1 bounce");
     harness
         .window
-        .get_by_label("because everything the camera can reach is on its side of every plane");
+        .get_by_label("because everything visible is on the camera's side of every plane");
 }
 
 #[test]
@@ -402,17 +402,25 @@ fn what_is_typed_and_not_taken_is_told() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     for (field, text, words) in [
-        ("radius", "-5", "radius must be above 0"),
-        ("radius", "big", "“big” is no number"),
-        ("center y", "1e30", "center goes from -1.0e12 to 1.0e12"),
+        ("radius", "-5", "radius must be greater than 0"),
+        ("radius", "big", "“big” is not a number"),
+        (
+            "center y",
+            "1e30",
+            "center must be between -1.0e12 and 1.0e12",
+        ),
         (
             "center x",
             "0, 1e30, 0",
-            "center goes from -1.0e12 to 1.0e12",
+            "center must be between -1.0e12 and 1.0e12",
         ),
-        ("diffuse red", "300", "diffuse goes from 0 to 255"),
-        ("diffuse green", "10, 20, 300", "diffuse goes from 0 to 255"),
-        ("diffuse hex", "#12", "“#12” is no color"),
+        ("diffuse red", "300", "diffuse must be between 0 and 255"),
+        (
+            "diffuse green",
+            "10, 20, 300",
+            "diffuse must be between 0 and 255",
+        ),
+        ("diffuse hex", "#12", "“#12” is not a color"),
     ] {
         harness.type_into(field, text);
         harness.window.get_by_label_contains(words);
@@ -604,7 +612,9 @@ fn a_sum_may_be_typed() {
     harness.type_into("radius", "(2 + 1,5) * 4");
     assert_eq!(radius(harness.scene(), 0), 14.0);
     harness.type_into("radius", "7 *");
-    harness.window.get_by_label_contains("“7 *” is no number");
+    harness
+        .window
+        .get_by_label_contains("“7 *” is not a number");
     assert_eq!(radius(harness.scene(), 0), 14.0);
 }
 

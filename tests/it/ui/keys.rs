@@ -106,7 +106,7 @@ fn selected_keys_are_copied_to_the_playhead_and_frames_are_typed() {
     assert_eq!(times(&harness), [0.0, 1.0, 3.0]);
     harness
         .window
-        .get_by_label_contains("move it to where they shall be");
+        .get_by_label_contains("move it to where they should go");
     // The playhead is on the frame nearest to a key.
     let mut harness = window(&[0.0, 0.34, 1.0]);
     harness.click("Key 2");

@@ -21,7 +21,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
         harness.window.query_by_label("Use this").is_none(),
         "no dot is chosen"
     );
-    harness.click("Cheapest way below");
+    harness.click("Fastest below");
     harness.window.get_by_label("Lab picture");
     assert!(
         harness
@@ -49,7 +49,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
         harness.window.query_by_label("Lab picture").is_none(),
         "what is edited is looked at"
     );
-    harness.click("Cheapest way below");
+    harness.click("Fastest below");
     harness.window.get_by_label("Lab picture");
     harness.window.get_by_label_contains("Leave Lab: ");
     assert!(
@@ -70,7 +70,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     // What was measured of one document is not shown for another.
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::L);
-    harness.click("Cheapest way below");
+    harness.click("Fastest below");
     harness.window.get_by_label("Lab picture");
     harness.press(CTRL, Key::N);
     assert!(harness.window.query_by_label("Lab picture").is_none());
@@ -91,7 +91,7 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
     harness.wait_for("the maps", |harness| harness.sees("stable"));
     harness
         .window
-        .get_by_label("The frame is where your scene stands.");
+        .get_by_label("The frame marks where your scene is.");
     let row = |harness: &EditorHarness, words: &str| {
         let rows = harness.window.query_all_by_label_contains(words);
         rows.last().map(|row| row.rect().center())

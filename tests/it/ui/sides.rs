@@ -169,7 +169,7 @@ fn packs_are_dragged_onto_rows_and_into_the_picture() {
     let (from, to) = (middle(&harness, "plane"), middle(&harness, "Sphere 1"));
     carry(&mut harness, from, to);
     assert_eq!(pack(&harness, 0), "plane");
-    assert_eq!(harness.editor().undo_label(), Some("Wear plane"));
+    assert_eq!(harness.editor().undo_label(), Some("Assign plane"));
     let to = place(&harness, center(harness.scene(), 1));
     carry(&mut harness, from, to);
     assert_eq!(pack(&harness, 1), "plane");
@@ -294,7 +294,7 @@ fn an_error_goes_when_the_same_is_tried_again() {
 fn in_a_narrow_window_the_timeline_has_a_menu() {
     let mut harness = EditorHarness::new();
     let rate = "frames per second";
-    let menu = "More of the timeline";
+    let menu = "More timeline settings";
     harness.window.get_by_label(rate);
     assert!(harness.window.query_by_label(menu).is_none());
     harness.window.set_size(egui::vec2(1000.0, 700.0));
@@ -442,8 +442,8 @@ fn letters_and_buttons_are_larger_and_smaller_by_keys() {
     harness.press(CTRL, Key::Minus);
     harness.press(CTRL, Key::Minus);
     assert!(zoom(&harness) < 0.95);
-    harness.choose("View", "Letters and buttons");
-    harness.click("Usual size");
+    harness.choose("View", "Text and buttons");
+    harness.click("Default size");
     assert_eq!(zoom(&harness), 1.0);
 }
 
@@ -471,7 +471,7 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     }
     let found = places(&harness, "Sphere");
     assert_eq!(found, [-600.0, 125.0, 225.0, 325.0]);
-    let told = "The copy is not in the picture";
+    let told = "The copy is outside the picture";
     assert!(harness.window.query_by_label_contains(told).is_none());
     harness.click("Sphere 2");
     harness.press(CTRL, Key::D);

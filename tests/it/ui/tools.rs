@@ -381,10 +381,10 @@ fn what_a_key_cannot_do_is_told() {
     harness.press(NONE, Key::Delete);
     harness
         .window
-        .get_by_label("Delete what is selected: nothing is selected");
+        .get_by_label("Delete the selection: nothing is selected");
     harness.press(CTRL, Key::Z);
     harness.window.get_by_label("Undo: nothing to undo");
-    assert!(!harness.sees("Delete what is selected: nothing is selected"));
+    assert!(!harness.sees("Delete the selection: nothing is selected"));
 }
 
 #[test]
@@ -557,7 +557,7 @@ fn everything_is_found_by_its_name() {
     assert!(
         harness
             .window
-            .query_by_label_contains("Enter does what")
+            .query_by_label_contains("Enter runs the")
             .is_none()
     );
     // What is possible comes first: nothing is in a group yet.
@@ -612,7 +612,7 @@ fn a_pixel_is_explained_and_parts_of_the_light_are_shown() {
     });
     // The explanation follows the scene.
     let told = |harness: &EditorHarness| {
-        let node = harness.window.get_by_label_contains("wears sphere 1, ");
+        let node = harness.window.get_by_label_contains("uses sphere 1, ");
         node.accesskit_node().value()
     };
     let before = told(&harness);

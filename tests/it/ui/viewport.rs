@@ -66,7 +66,7 @@ fn keys_switch_projection_markers_and_resolution() {
     harness.press(Modifiers::NONE, Key::Num0);
     harness
         .window
-        .get_by_label("Orthographic projection; P is perspective");
+        .get_by_label("Orthographic projection; P switches to perspective");
     harness.press(Modifiers::NONE, Key::P);
     harness.press(Modifiers::NONE, Key::Escape);
     harness.press(Modifiers::NONE, Key::Escape);
@@ -330,7 +330,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     let primary = egui::PointerButton::Primary;
     pull(&mut harness, from, to, primary, Modifiers::SHIFT);
     drop_at(&mut harness, to, primary, Modifiers::SHIFT);
-    harness.window.get_by_label("Leave High-res, a part");
+    harness.window.get_by_label("Leave High-res, partial");
     assert!(harness.picture() == whole, "all of it is there already");
     harness.press(Modifiers::NONE, Key::U);
     harness.press(Modifiers::NONE, Key::H);
