@@ -129,7 +129,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             .collect();
         let command_names = command_names.join(", ");
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; the commands are {there}, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; the commands are {command_names}, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {

@@ -194,7 +194,7 @@ impl Editor {
         let (take, interpolated) = resampled(take);
         if interpolated * STEPPED_SHARE > take.samples.len() {
             self.notify(format!(
-                "The mouse moved in steps: {stepped} of {} samples are interpolated",
+                "The mouse moved in steps: {interpolated} of {} samples are interpolated",
                 take.samples.len()
             ));
         }

@@ -26,7 +26,9 @@ pub enum FramesError {
         text: String,
     },
     /// There are more frames than can be handled at once.
-    #[error("there can be at most {MOST} frames at once: choose some of them, such as 1-{MOST}")]
+    #[error(
+        "there can be at most {MAX_FRAMES} frames at once: choose some of them, such as 1-{MAX_FRAMES}"
+    )]
     TooMany,
 }
 
