@@ -17,10 +17,10 @@ pub const UNFINISHED: &str = ".glint-unfinished-";
 /// # Errors
 /// Any error of the system; the file at `path` is then unchanged.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let beside = NewFile::beside(path)?;
-    remove_leftovers(&beside.folder);
-    beside.as_file().write_all(bytes)?;
-    beside.place_durably()
+    let new_file = NewFile::beside(path)?;
+    remove_leftovers(&new_file.folder);
+    new_file.as_file().write_all(bytes)?;
+    new_file.place_durably()
 }
 
 /// Returns whether a path that a file in `folder` names stays within that folder, with symbolic links followed.
@@ -41,12 +41,12 @@ pub fn stays_inside(folder: &Path, path: &Path) -> bool {
     } else {
         folder
     };
-    let leads_there = |real: PathBuf| {
+    let leads_inside = |real: PathBuf| {
         let folder = folder.canonicalize();
         folder.is_ok_and(|folder| real.starts_with(folder))
     };
     // A path that does not exist is harmless.
-    is_within && folder.join(path).canonicalize().map_or(true, leads_there)
+    is_within && folder.join(path).canonicalize().map_or(true, leads_inside)
 }
 
 /// Most backups of one file.
@@ -66,7 +66,7 @@ pub fn back_up(path: &Path) -> io::Result<PathBuf> {
         }
         let backup = PathBuf::from(name);
         match fs::read(&backup) {
-            Ok(there) if there == bytes => return Ok(backup),
+            Ok(existing) if existing == bytes => return Ok(backup),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 write_atomic(&backup, &bytes)?;
                 return Ok(backup);
@@ -96,7 +96,7 @@ impl NewFile {
     /// # Errors
     /// Any error of the system; also if the folder does not exist, if `path` is not a file, or if it is read-only.
     pub fn beside(path: &Path) -> io::Result<Self> {
-        let target = behind_links(path)?;
+        let target = resolve_links(path)?;
         let existing = match fs::metadata(&target) {
             Ok(existing) => Some(existing),
             // An invalid name, such as one that is too long, is reported before anything is created for it.
@@ -200,7 +200,7 @@ pub fn remove_leftovers(folder: &Path) {
 /// # Errors
 /// Any error of the system.
 pub fn make_folder(path: &Path) -> io::Result<()> {
-    let target = behind_links(path)?;
+    let target = resolve_links(path)?;
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_dir()) {
         return Err(io::Error::other(
             "something with this name exists and is not a folder",
@@ -232,31 +232,31 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads an open file or pipe; the inner error is its length if that exceeds `most` bytes.
+/// Reads an open file or pipe; the inner error is its length if that exceeds `limit` bytes.
 ///
 /// # Errors
 /// Any error of the system, and if there is not enough memory.
-pub fn read_at_most(file: File, most: u64) -> io::Result<Result<Vec<u8>, u64>> {
+pub fn read_at_most(file: File, limit: u64) -> io::Result<Result<Vec<u8>, u64>> {
     let length = file.metadata()?.len();
-    if length > most {
+    if length > limit {
         return Ok(Err(length));
     }
     let mut bytes = Vec::new();
     let size = usize::try_from(length).unwrap_or(usize::MAX);
     bytes.try_reserve_exact(size.saturating_add(1))?;
     // The file may grow while it is read, and the length of a pipe is unknown.
-    let read = file.take(most + 1).read_to_end(&mut bytes)? as u64;
-    Ok(if read > most { Err(read) } else { Ok(bytes) })
+    let read = file.take(limit + 1).read_to_end(&mut bytes)? as u64;
+    Ok(if read > limit { Err(read) } else { Ok(bytes) })
 }
 
-/// Removes the oldest files of a folder until at most `most` are left.
-pub fn remove_oldest(folder: &Path, most: usize) {
+/// Removes the oldest files of a folder until at most `max_files` are left.
+pub fn remove_oldest(folder: &Path, max_files: usize) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(SystemTime, PathBuf)> = entries
         .filter_map(|entry| Some((time_of(&entry.path())?, entry.path())))
         .collect();
     files.sort();
-    let surplus = files.len().saturating_sub(most);
+    let surplus = files.len().saturating_sub(max_files);
     for (_, path) in &files[..surplus] {
         let _ = fs::remove_file(path);
     }
@@ -272,8 +272,8 @@ pub type Marks = (SystemTime, u64);
 
 /// The marks of a file; `None` if the system does not tell.
 pub fn marks_of(path: &Path) -> Option<Marks> {
-    let about = fs::metadata(path).ok()?;
-    Some((about.modified().ok()?, about.len()))
+    let metadata = fs::metadata(path).ok()?;
+    Some((metadata.modified().ok()?, metadata.len()))
 }
 
 /// Makes a path absolute, so that it stays valid when the working directory changes; unchanged if that fails.
@@ -289,8 +289,8 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
 
 /// Returns whether a file name has this extension, in upper or lower case.
 pub fn has_ending(path: &Path, ending: &str) -> bool {
-    let own = path.extension();
-    own.is_some_and(|own| own.eq_ignore_ascii_case(ending))
+    let extension = path.extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
 /// Returns whether the system says that nothing exists at a path. A path that cannot be accessed may exist.
@@ -365,7 +365,7 @@ impl Stamp {
 }
 
 /// Follows symbolic links to the file that a path refers to, whether or not it exists yet.
-fn behind_links(path: &Path) -> io::Result<PathBuf> {
+fn resolve_links(path: &Path) -> io::Result<PathBuf> {
     let mut target = path.to_owned();
     // Systems follow no more than 40 links either.
     for _ in 0..40 {
@@ -416,8 +416,8 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
 
 /// Strips the path, which means nothing to users, from the end of an error about a temporary file.
 pub fn without_path(error: io::Error) -> io::Error {
-    let words = error.to_string();
-    match words.split_once(" at path ") {
+    let text = error.to_string();
+    match text.split_once(" at path ") {
         Some((why, _)) => io::Error::new(error.kind(), why),
         None => error,
     }

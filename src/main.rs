@@ -29,10 +29,10 @@ fn main() -> ExitCode {
 
 /// Opens the window until its first picture is there, and prints the time and the memory that took.
 fn time_start(scene: Option<PathBuf>, since: Instant) -> Result<(), CliError> {
-    let asked = scene.clone();
+    let scene_path = scene.clone();
     let stats = ui::time_start(scene, since).map_err(CliError::failed)?;
     // Messages about the file were lost with the window. Reading it earlier would have taken time.
-    if let Some(path) = asked {
+    if let Some(path) = scene_path {
         Document::load(&path)?;
     }
     let stats = stats

@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::fmt::Display;
 
 /// A number with the name of what it counts: `1 frame`, `3 frames`.
-pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, one: &str) -> String {
+pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, singular: &str) -> String {
     let s = if number == N::from(1) { "" } else { "s" };
-    format!("{number} {one}{s}")
+    format!("{number} {singular}{s}")
 }
 
 /// A word with its first letter in upper case.
@@ -27,11 +27,11 @@ pub fn short_number(value: f64) -> String {
 }
 
 /// Most names that a message lists.
-const MOST_NAMES: usize = 3;
+const MAX_NAMES: usize = 3;
 
 /// The first few names, and how many more there are; `None` if there are none.
 pub fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
-    let first: Vec<String> = names.by_ref().take(MOST_NAMES).collect();
+    let first: Vec<String> = names.by_ref().take(MAX_NAMES).collect();
     let more = match names.count() {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -40,11 +40,11 @@ pub fn listed(mut names: impl Iterator<Item = String>) -> Option<String> {
 }
 
 /// Most characters of a text that a message quotes.
-const QUOTED: usize = 40;
+const MAX_QUOTED: usize = 40;
 
 /// A text in quotation marks, shortened if it is long.
 pub fn quoted(text: &str) -> String {
-    format!("“{}”", shortened(text, QUOTED))
+    format!("“{}”", shortened(text, MAX_QUOTED))
 }
 
 /// A word quoted for a shell. Only words with a zero byte cannot be quoted, and no path contains one.
@@ -52,13 +52,13 @@ pub fn for_shell(word: &str) -> String {
     shlex::try_quote(word).map_or_else(|_| word.to_owned(), Cow::into_owned)
 }
 
-/// The first line of a text, cut to at most `most` characters; `…` marks what is left out.
-pub fn shortened(text: &str, most: usize) -> String {
+/// The first line of a text, cut to at most `max_chars` characters; `…` marks what is left out.
+pub fn shortened(text: &str, max_chars: usize) -> String {
     let text = text.trim();
     let line = text.lines().next().unwrap_or_default();
-    let short: String = line.chars().take(most).collect();
-    let rest = if short.len() < text.len() { "…" } else { "" };
-    format!("{}{rest}", short.trim_end())
+    let short: String = line.chars().take(max_chars).collect();
+    let ellipsis = if short.len() < text.len() { "…" } else { "" };
+    format!("{}{ellipsis}", short.trim_end())
 }
 
 #[cfg(test)]

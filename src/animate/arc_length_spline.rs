@@ -16,7 +16,7 @@ const PIECES: usize = 16;
 pub struct ArcLengthSpline {
     segments: Vec<Segment>,
     /// Arc length up to each of the given points, in world units.
-    reached: Vec<f64>,
+    lengths_at_points: Vec<f64>,
 }
 
 /// A cubic from one point to the next, with tabulated arc lengths.
@@ -35,7 +35,7 @@ impl ArcLengthSpline {
     /// Creates a curve through `points`, of which there must be at least one.
     pub fn new(points: &[DVec3], closing: Closing) -> Self {
         let mut stops: Vec<DVec3> = Vec::new();
-        let mut places = Vec::new();
+        let mut stop_indices = Vec::new();
         for &point in points {
             // A distance whose square underflows counts as zero.
             if stops
@@ -44,7 +44,7 @@ impl ArcLengthSpline {
             {
                 stops.push(point);
             }
-            places.push(stops.len() - 1);
+            stop_indices.push(stops.len() - 1);
         }
         let last = stops.len() - 1;
         let is_closed = closing == Closing::Closed && last > 1 && stops[0] == stops[last];
@@ -70,13 +70,16 @@ impl ArcLengthSpline {
             .iter()
             .map(|segment| segment.start + segment.length());
         let stops: Vec<f64> = std::iter::once(0.0).chain(ends).collect();
-        let reached = places.into_iter().map(|index| stops[index]).collect();
-        Self { segments, reached }
+        let lengths_at_points = stop_indices.into_iter().map(|index| stops[index]).collect();
+        Self {
+            segments,
+            lengths_at_points,
+        }
     }
 
     /// Arc length up to each of the given points, in world units.
-    pub fn reached(&self) -> &[f64] {
-        &self.reached
+    pub fn lengths_at_points(&self) -> &[f64] {
+        &self.lengths_at_points
     }
 
     /// Returns the position at an arc length; `None` for a curve through a single point.
@@ -85,7 +88,7 @@ impl ArcLengthSpline {
             .segments
             .partition_point(|segment| segment.start <= length);
         let segment = self.segments.get(after.saturating_sub(1))?;
-        Some(segment.at(segment.share((length - segment.start).max(0.0))))
+        Some(segment.at(segment.parameter_at((length - segment.start).max(0.0))))
     }
 }
 
@@ -107,8 +110,8 @@ impl Segment {
             lengths: [0.0; PIECES + 1],
         };
         for piece in 0..PIECES {
-            let (from, to) = (share_of(piece), share_of(piece + 1));
-            segment.lengths[piece + 1] = segment.lengths[piece] + segment.between(from, to);
+            let (from, to) = (parameter_of(piece), parameter_of(piece + 1));
+            segment.lengths[piece + 1] = segment.lengths[piece] + segment.length_between(from, to);
         }
         segment
     }
@@ -118,52 +121,53 @@ impl Segment {
     }
 
     /// Returns the position at a parameter from 0 to 1: a cubic Hermite polynomial.
-    fn at(&self, share: f64) -> DVec3 {
+    fn at(&self, parameter: f64) -> DVec3 {
         let [from, to] = self.ends;
-        if share >= 1.0 {
+        if parameter >= 1.0 {
             return to;
         }
-        let rest = 1.0 - share;
-        let bend = self.tangents[0] * rest - self.tangents[1] * share;
-        from + (to - from) * (share * share * (3.0 - 2.0 * share)) + bend * (share * rest)
+        let remaining = 1.0 - parameter;
+        let tangent_part = self.tangents[0] * remaining - self.tangents[1] * parameter;
+        from + (to - from) * (parameter * parameter * (3.0 - 2.0 * parameter))
+            + tangent_part * (parameter * remaining)
     }
 
-    fn speed(&self, share: f64) -> f64 {
+    fn speed(&self, parameter: f64) -> f64 {
         let [from, to] = self.ends;
         let [out, into] = self.tangents;
-        let direct = (to - from) * (6.0 * share * (1.0 - share));
-        let out = out * (1.0 + share * (3.0 * share - 4.0));
-        (direct + out + into * (share * (3.0 * share - 2.0))).length()
+        let direct = (to - from) * (6.0 * parameter * (1.0 - parameter));
+        let out = out * (1.0 + parameter * (3.0 * parameter - 4.0));
+        (direct + out + into * (parameter * (3.0 * parameter - 2.0))).length()
     }
 
     /// Returns the arc length between two parameters, by three-point Gauss–Legendre quadrature.
-    fn between(&self, from: f64, to: f64) -> f64 {
+    fn length_between(&self, from: f64, to: f64) -> f64 {
         let (half, middle) = ((to - from) / 2.0, f64::midpoint(from, to));
-        let off = half * 0.6_f64.sqrt();
-        let outer = self.speed(middle - off) + self.speed(middle + off);
+        let offset = half * 0.6_f64.sqrt();
+        let outer = self.speed(middle - offset) + self.speed(middle + offset);
         half * (5.0 * outer + 8.0 * self.speed(middle)) / 9.0
     }
 
     /// Returns the parameter at which an arc length is reached.
-    fn share(&self, length: f64) -> f64 {
+    fn parameter_at(&self, length: f64) -> f64 {
         if length >= self.length() {
             return 1.0;
         }
         let piece = self.lengths.partition_point(|&reached| reached <= length) - 1;
         let (start, end) = (self.lengths[piece], self.lengths[piece + 1]);
-        let (low, high) = (share_of(piece), share_of(piece + 1));
-        let mut share = low + (high - low) * (length - start) / (end - start);
+        let (low, high) = (parameter_of(piece), parameter_of(piece + 1));
+        let mut parameter = low + (high - low) * (length - start) / (end - start);
         for _ in 0..3 {
-            let speed = self.speed(share);
+            let speed = self.speed(parameter);
             if speed > 0.0 {
-                let missing = length - start - self.between(low, share);
-                share = (share + missing / speed).clamp(low, high);
+                let missing = length - start - self.length_between(low, parameter);
+                parameter = (parameter + missing / speed).clamp(low, high);
             }
         }
-        share
+        parameter
     }
 }
 
-fn share_of(piece: usize) -> f64 {
+fn parameter_of(piece: usize) -> f64 {
     piece as f64 / PIECES as f64
 }

@@ -32,7 +32,9 @@ pub use pose::{CameraChange, motion_between, pose, shot};
 pub use presets::Preset;
 pub use resample::resampled;
 pub use retime::{Retime, longest_flight, paused_seconds, stretched};
-pub use simplify::{Landmark, Simplified, Worst, deviation, ends_of, simplify, worst_off};
+pub use simplify::{
+    Landmark, Simplified, WorstDeviation, deviation, ends_of, simplify, worst_deviation,
+};
 pub use table::{TableError, from_table, from_text, to_table, to_text};
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ pub struct CameraPath {
     /// the camera never turns the longer way.
     angles: Vec<Orientation>,
     /// For each smooth segment, the index of its run and its index in that run; `None` for other segments.
-    smooth: Vec<Option<(usize, usize)>>,
+    smooth_segments: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
 }
 
@@ -45,7 +45,7 @@ impl CameraPath {
         let mut path = Self {
             keys: keys.to_vec(),
             angles,
-            smooth: vec![None; keys.len().saturating_sub(1)],
+            smooth_segments: vec![None; keys.len().saturating_sub(1)],
             runs: Vec::new(),
         };
         let is_smooth = |i: usize| keys[i].interpolation == Interpolation::Smooth;
@@ -53,7 +53,7 @@ impl CameraPath {
         while start + 1 < keys.len() {
             let mut end = start;
             while end + 1 < keys.len() && is_smooth(end) {
-                path.smooth[end] = Some((path.runs.len(), end - start));
+                path.smooth_segments[end] = Some((path.runs.len(), end - start));
                 end += 1;
             }
             if end > start {
@@ -69,7 +69,7 @@ impl CameraPath {
         let angles = &self.angles[start..=end];
         // Only a flight that is a single run from start to end can be closed.
         let is_whole = start == 0 && end + 1 == self.keys.len();
-        let closing = if is_whole && is_round(&keys[0].value, &keys[keys.len() - 1].value) {
+        let closing = if is_whole && is_closed(&keys[0].value, &keys[keys.len() - 1].value) {
             Closing::Closed
         } else {
             Closing::Open
@@ -77,18 +77,18 @@ impl CameraPath {
         let times: Vec<f64> = keys.iter().map(|key| key.time).collect();
         let curve = |values: Vec<f64>| Curve::new(times.clone(), values, closing);
         let angle = |of: fn(&Orientation) -> f64| curve(angles.iter().map(of).collect());
-        let lens =
+        let log_curve =
             |of: fn(&Camera) -> f64| curve(keys.iter().map(|key| of(&key.value).ln()).collect());
         let points: Vec<DVec3> = keys.iter().map(|key| key.value.position).collect();
         let route = ArcLengthSpline::new(&points, closing);
         Run {
-            pace: curve(route.reached().to_vec()),
+            pace: curve(route.lengths_at_points().to_vec()),
             route,
             yaw: angle(|angles| angles.yaw),
             pitch: angle(|angles| angles.pitch),
             roll: angle(|angles| angles.roll),
-            zoom: lens(|camera| camera.projection_distance),
-            height: lens(|camera| camera.orthographic_height),
+            zoom: log_curve(|camera| camera.projection_distance),
+            height: log_curve(|camera| camera.orthographic_height),
         }
     }
 
@@ -109,23 +109,23 @@ impl CameraPath {
             return Some(from.value.clone());
         };
         let along = eased(from.easing, (time - from.time) / (to.time - from.time));
-        let camera = match (from.interpolation, self.smooth[i]) {
+        let camera = match (from.interpolation, self.smooth_segments[i]) {
             (Interpolation::Hold, _) if to.time - time < SAME_TIME => to.value.clone(),
             (Interpolation::Hold, _) => from.value.clone(),
-            (_, Some((run, index))) => self.on_curve(i, &self.runs[run], index, along),
+            (_, Some((run, index))) => self.smooth_camera(i, &self.runs[run], index, along),
             (Interpolation::Orbit { around }, _) => {
                 let position = orbit(around, from.value.position, to.value.position, along);
                 Camera {
                     position,
-                    ..self.straight(i, along)
+                    ..self.linear_camera(i, along)
                 }
             }
-            (Interpolation::Linear | Interpolation::Smooth, _) => self.straight(i, along),
+            (Interpolation::Linear | Interpolation::Smooth, _) => self.linear_camera(i, along),
         };
         Some(camera)
     }
 
-    fn straight(&self, i: usize, along: f64) -> Camera {
+    fn linear_camera(&self, i: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
         let (start, end) = (self.angles[i], self.angles[i + 1]);
         let mix = |a: f64, b: f64| a + (b - a) * along;
@@ -144,7 +144,7 @@ impl CameraPath {
     }
 
     /// Returns the camera on the smooth segment `i` of the path, which is segment `index` of its run.
-    fn on_curve(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
+    fn smooth_camera(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
         let position = match run.route.at(run.pace.at(index, along)) {
             Some(position) if from.position != to.position => position,
@@ -203,7 +203,7 @@ pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 
     let (first, turn) = if is_on_axis {
         (angle(if near < far { end } else { start }), 0.0)
     } else {
-        (angle(start), shorter(angle(end) - angle(start)))
+        (angle(start), shorter_turn(angle(end) - angle(start)))
     };
     let radius = near + (far - near) * along;
     let (sine, cosine) = (first + turn * along).sin_cos();
@@ -212,7 +212,7 @@ pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 
 }
 
 /// Returns the equivalent angle of at most half a turn.
-fn shorter(turn: f64) -> f64 {
+fn shorter_turn(turn: f64) -> f64 {
     let wound = (turn + PI).rem_euclid(TAU) - PI;
     // Half a turn is equally long in both directions: the positive one is chosen.
     if wound == -PI { PI } else { wound }
@@ -225,8 +225,8 @@ pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientat
         let next = match unwound.last() {
             None => angles,
             Some(last) => Orientation {
-                yaw: nearest(angles.yaw, last.yaw),
-                roll: nearest(angles.roll, last.roll),
+                yaw: nearest_equivalent(angles.yaw, last.yaw),
+                roll: nearest_equivalent(angles.roll, last.roll),
                 ..angles
             },
         };
@@ -236,24 +236,24 @@ pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientat
 }
 
 /// Adds full turns to `angle`, so that it is nearest to `to`. If none are needed, it is returned unchanged.
-pub(super) fn nearest(angle: f64, to: f64) -> f64 {
+pub(super) fn nearest_equivalent(angle: f64, to: f64) -> f64 {
     let turn = angle - to;
     if turn.abs() < PI {
         angle
     } else {
-        to + shorter(turn)
+        to + shorter_turn(turn)
     }
 }
 
 /// Returns whether both cameras are the same, so that a flight from one to the other is closed.
-fn is_round(first: &Camera, last: &Camera) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= 1e-9;
+fn is_closed(first: &Camera, last: &Camera) -> bool {
+    let is_close = |a: f64, b: f64| (a - b).abs() <= 1e-9;
     // Angles half a turn either way are the same.
-    let same_angle = |a: f64, b: f64| near(a.sin(), b.sin()) && near(a.cos(), b.cos());
+    let same_angle = |a: f64, b: f64| is_close(a.sin(), b.sin()) && is_close(a.cos(), b.cos());
     let (a, b) = (Orientation::of(first), Orientation::of(last));
     first.position == last.position
         && same_angle(a.yaw, b.yaw)
-        && near(a.pitch, b.pitch)
+        && is_close(a.pitch, b.pitch)
         && same_angle(a.roll, b.roll)
         && first.projection_distance == last.projection_distance
         && first.orthographic_height == last.orthographic_height

@@ -51,20 +51,20 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
         (_, _, Interpolation::Hold) if to.time - time < SAME_TIME => to.value,
         (_, _, Interpolation::Hold) => from.value,
         (Value::Number(_), Value::Number(_), Interpolation::Smooth) => {
-            let (run, place) = run_around(keys, i);
+            let (run, index) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();
             let values = run.iter().map(|key| number(key.value)).collect();
-            Value::Number(Curve::new(times, values, Closing::Open).at(place, along))
+            Value::Number(Curve::new(times, values, Closing::Open).at(index, along))
         }
         (Value::Number(a), Value::Number(b), _) => Value::Number(a + (b - a) * along),
         (Value::Point(_), Value::Point(_), Interpolation::Smooth) => {
-            let (run, place) = run_around(keys, i);
+            let (run, index) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();
             let points: Vec<DVec3> = run.iter().map(|key| point(key.value)).collect();
             let route = ArcLengthSpline::new(&points, Closing::Open);
-            let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
-            let there = route.at(pace.at(place, along));
-            there.map_or(from.value, Value::Point)
+            let pace = Curve::new(times, route.lengths_at_points().to_vec(), Closing::Open);
+            let position = route.at(pace.at(index, along));
+            position.map_or(from.value, Value::Point)
         }
         (Value::Point(a), Value::Point(b), Interpolation::Orbit { around }) => {
             Value::Point(orbit(around, a, b, along))
@@ -80,18 +80,18 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
 /// long run.
 fn run_around(keys: &[Key<Value>], segment: usize) -> (&[Key<Value>], usize) {
     let is_smooth = |key: usize| keys[key].interpolation == Interpolation::Smooth;
-    let is_place_of = |key: usize, other: usize| keys[key].value == keys[other].value;
+    let is_same_value = |key: usize, other: usize| keys[key].value == keys[other].value;
     let mut start = segment;
     while start > 0
         && is_smooth(start - 1)
-        && (start + 1 >= segment || is_place_of(start, start + 1))
+        && (start + 1 >= segment || is_same_value(start, start + 1))
     {
         start -= 1;
     }
     let mut end = segment + 1;
     while end + 1 < keys.len()
         && is_smooth(end)
-        && (end <= segment + 2 || is_place_of(end, end - 1))
+        && (end <= segment + 2 || is_same_value(end, end - 1))
     {
         end += 1;
     }
@@ -135,12 +135,12 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
         (a.y_axis, b.y_axis),
         (a.z_axis, b.z_axis),
     ];
-    let apart: f64 = axes.iter().map(|(a, b)| (*a - *b).length_squared()).sum();
-    let along: f64 = axes.iter().map(|(a, b)| (*a + *b).length_squared()).sum();
-    let half = apart.sqrt().atan2((along - 4.0).max(0.0).sqrt());
+    let differences: f64 = axes.iter().map(|(a, b)| (*a - *b).length_squared()).sum();
+    let sums: f64 = axes.iter().map(|(a, b)| (*a + *b).length_squared()).sum();
+    let half_angle = differences.sqrt().atan2((sums - 4.0).max(0.0).sqrt());
     CameraChange {
         distance: (to.position - from.position).length(),
-        turn: (2.0 * half).to_degrees(),
+        turn: (2.0 * half_angle).to_degrees(),
         zoom: match (from.projection, to.projection) {
             (Projection::Perspective, Projection::Perspective) => {
                 (to.projection_distance / from.projection_distance).ln()
@@ -227,7 +227,7 @@ mod tests {
                 prop_assert_eq!(value_at(&numbers, time), Some(Value::Number(expected)));
                 let points: Vec<DVec3> = whole.iter().map(|key| point(key.value)).collect();
                 let route = ArcLengthSpline::new(&points, Closing::Open);
-                let pace = Curve::new(times, route.reached().to_vec(), Closing::Open);
+                let pace = Curve::new(times, route.lengths_at_points().to_vec(), Closing::Open);
                 let expected = route.at(pace.at(index, along)).unwrap_or(points[index]);
                 let Some(Value::Point(found)) = value_at(&keys, time) else {
                     return Err(TestCaseError::fail("no point"));

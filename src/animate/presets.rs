@@ -8,11 +8,11 @@ use crate::scene::{Camera, Interpolation, Key, Orientation};
 
 /// Number of segments of a closed path of splines. A centripetal spline through this many points of a circle
 /// deviates from it by 1/9000 of its radius.
-const ROUND_KEYS: usize = 24;
+const LOOP_SEGMENTS: usize = 24;
 /// Ratio of width to depth of the ellipse; the figure eight is half as wide.
-const OBLONG: f64 = 1.6;
+const ELLIPSE_RATIO: f64 = 1.6;
 /// Length of dolly and crane moves, as a share of the distance to the target.
-const TRAVEL: f64 = 0.5;
+const TRAVEL_SHARE: f64 = 0.5;
 
 /// A flight that starts from the current camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +62,8 @@ impl Preset {
         let heading = heading(camera).filter(|_| is_upright);
         match self {
             Self::Turntable => {
-                let place = |share: f64| target + turned(arm, share * TAU);
-                let mut keys = looking(camera, target, 4, seconds, place);
+                let position_at = |share: f64| target + turned(arm, share * TAU);
+                let mut keys = keys_along(camera, target, 4, seconds, position_at);
                 // From straight above or below, the picture rotates.
                 for key in &mut keys {
                     key.interpolation = Interpolation::Orbit { around: target };
@@ -76,33 +76,38 @@ impl Preset {
                 keys
             }
             Self::Dolly => {
-                let left = |share: f64| 1.0 - TRAVEL * share;
-                let place = |share| target + arm * left(share);
-                let mut keys = looking(camera, target, 1, seconds, place);
+                let remaining = |share: f64| 1.0 - TRAVEL_SHARE * share;
+                let position_at = |share| target + arm * remaining(share);
+                let mut keys = keys_along(camera, target, 1, seconds, position_at);
                 for key in &mut keys {
                     // In orthographic projection, only the height of the window changes the size of things.
-                    key.value.orthographic_height *= left(key.time / seconds);
+                    key.value.orthographic_height *= remaining(key.time / seconds);
                 }
                 keys
             }
             Self::Crane => {
-                let rise = arm.length() * TRAVEL;
-                looking(camera, target, 6, seconds, |share| {
+                let rise = arm.length() * TRAVEL_SHARE;
+                keys_along(camera, target, 6, seconds, |share| {
                     camera.position + DVec3::new(0.0, rise * share, 0.0)
                 })
             }
-            Self::Ellipse => looking(camera, target, ROUND_KEYS, seconds, |share| {
+            Self::Ellipse => keys_along(camera, target, LOOP_SEGMENTS, seconds, |share| {
                 let (sine, cosine) = (share * TAU).sin_cos();
-                let aside = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
-                target + DVec3::new(arm.x * cosine, arm.y, arm.z * cosine) + aside * (OBLONG * sine)
+                let sideways = turned(DVec3::new(arm.x, 0.0, arm.z), TAU / 4.0);
+                target
+                    + DVec3::new(arm.x * cosine, arm.y, arm.z * cosine)
+                    + sideways * (ELLIPSE_RATIO * sine)
             }),
             Self::FigureEight => {
-                let level = heading.map_or(DVec3::new(arm.x, 0.0, arm.z), |way| way * arm.length());
-                let aside = turned(level, TAU / 4.0);
-                let mut keys = looking(camera, target, ROUND_KEYS, seconds, |share| {
+                let level = heading.map_or(DVec3::new(arm.x, 0.0, arm.z), |direction| {
+                    direction * arm.length()
+                });
+                let sideways = turned(level, TAU / 4.0);
+                let mut keys = keys_along(camera, target, LOOP_SEGMENTS, seconds, |share| {
                     // Lemniscate of Gerono, in front of the target.
                     let (sine, cosine) = (share * TAU).sin_cos();
-                    camera.position + aside * (0.5 * OBLONG * sine) - arm * (0.25 * sine * cosine)
+                    camera.position + sideways * (0.5 * ELLIPSE_RATIO * sine)
+                        - arm * (0.25 * sine * cosine)
                 });
                 // From straight above or below, the direction of the upper edge stays constant.
                 if let Some(heading) = heading {
@@ -120,13 +125,14 @@ impl Preset {
 /// Returns the horizontal direction of the camera: its viewing direction or, if that is steep, its up vector.
 fn heading(camera: &Camera) -> Option<DVec3> {
     let basis = camera.basis()?;
-    let [up, ahead] = [basis.y_axis, -basis.z_axis].map(|way| DVec3::new(way.x, 0.0, way.z));
-    let way = if up.length() < ahead.length() {
+    let [up, ahead] =
+        [basis.y_axis, -basis.z_axis].map(|direction| DVec3::new(direction.x, 0.0, direction.z));
+    let direction = if up.length() < ahead.length() {
         ahead
     } else {
         up
     };
-    way.try_normalize()
+    direction.try_normalize()
 }
 
 /// Rotates a vector about the vertical axis by an angle in radians.
@@ -137,19 +143,19 @@ fn turned(v: DVec3, angle: f64) -> DVec3 {
 
 /// Returns keys at equal time steps along a path, looking at the target. If the path returns to its start, the last
 /// position is exactly the first.
-fn looking(
+fn keys_along(
     camera: &Camera,
     target: DVec3,
     segments: usize,
     seconds: f64,
-    place: impl Fn(f64) -> DVec3,
+    position_at: impl Fn(f64) -> DVec3,
 ) -> Vec<Key<Camera>> {
     let extent = (camera.position - target).length();
     let key = |n: usize| {
         let share = n as f64 / segments as f64;
-        let mut position = place(share);
-        if (position - place(0.0)).length() <= extent * 1e-9 {
-            position = place(0.0);
+        let mut position = position_at(share);
+        if (position - position_at(0.0)).length() <= extent * 1e-9 {
+            position = position_at(0.0);
         }
         let facing = Camera {
             look_at: target - position,

@@ -15,28 +15,31 @@ const PAUSE: f64 = 0.15;
 pub fn resampled(take: &Take) -> (Take, usize) {
     let samples = &take.samples;
     let mut moved = samples.clone();
-    let mut count = vec![false; samples.len()];
+    let mut is_changed = vec![false; samples.len()];
     for (from, to) in steps(samples, |a, b| a.1 == b.1) {
         for n in from + 1..to {
             let share = share(samples, (from, n, to));
             moved[n].1 = samples[from].1.lerp(samples[to].1, share);
-            count[n] = true;
+            is_changed[n] = true;
         }
     }
     for (from, to) in steps(samples, |a, b| angles(a) == angles(b)) {
         let (before, after) = (angles(&samples[from]), angles(&samples[to]));
-        let turn = (after - before).map(|way| (way + PI).rem_euclid(TAU) - PI);
+        let turn = (after - before).map(|angle| (angle + PI).rem_euclid(TAU) - PI);
         for n in from + 1..to {
             let turned = before + turn * share(samples, (from, n, to));
             (moved[n].2, moved[n].3, moved[n].4) = turned.into();
-            count[n] = true;
+            is_changed[n] = true;
         }
     }
     let take = Take {
         samples: moved,
         lenses: take.lenses.clone(),
     };
-    (take, count.into_iter().filter(|is_moved| *is_moved).count())
+    (
+        take,
+        is_changed.into_iter().filter(|is_moved| *is_moved).count(),
+    )
 }
 
 fn angles(sample: &Sample) -> DVec3 {

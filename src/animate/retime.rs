@@ -1,15 +1,15 @@
 //! Changing the timing of a flight.
 
-use super::path::nearest;
+use super::path::nearest_equivalent;
 use super::{CameraChange, CameraPath, motion_between};
 use crate::scene::{
     Animation, Camera, Easing, Interpolation, Key, MAX_SECONDS, Orientation, Track,
 };
 
 /// Number of steps in which the length of a segment is measured.
-const STEPS: usize = 16;
+const STEPS_PER_SEGMENT: usize = 16;
 /// Smallest time between keys at constant speed (before scaling), and shortest flight, in seconds.
-const CLOSEST: f64 = 1.0 / 240.0;
+const MIN_KEY_GAP: f64 = 1.0 / 240.0;
 /// Share of the flight's mean speed below which a segment is a pause.
 const PAUSE_SHARE: f64 = 0.05;
 /// Length that a rotation by one radian counts as, as a share of the length of the path; so does a zoom by a factor
@@ -67,7 +67,7 @@ pub fn stretched(animation: &Animation, seconds: f64) -> Animation {
     };
     let start = first.time;
     let seconds = seconds.min(longest_flight(animation));
-    let scale = seconds.max(CLOSEST) / (last.time - start);
+    let scale = seconds.max(MIN_KEY_GAP) / (last.time - start);
     let tracks = animation.tracks.iter().map(|track| Track {
         target: track.target.clone(),
         keys: scaled(&track.keys, start, scale),
@@ -92,7 +92,7 @@ pub fn longest_flight(animation: &Animation) -> f64 {
 
 /// Scales the times of all keys after `start`, relative to it.
 fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
-    let later = |key: &Key<T>| Key {
+    let rescaled = |key: &Key<T>| Key {
         time: if key.time > start {
             (start + (key.time - start) * scale).min(MAX_SECONDS)
         } else {
@@ -100,7 +100,7 @@ fn scaled<T: Clone>(keys: &[Key<T>], start: f64, scale: f64) -> Vec<Key<T>> {
         },
         ..key.clone()
     };
-    keys.iter().map(later).collect()
+    keys.iter().map(rescaled).collect()
 }
 
 /// Returns the length of each segment: that of its curve, or of its rotation and zoom if larger. Cuts have no
@@ -112,10 +112,10 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
         if pair[0].interpolation == Interpolation::Hold {
             return sum;
         }
-        let step = (pair[1].time - pair[0].time) / STEPS as f64;
+        let step = (pair[1].time - pair[0].time) / STEPS_PER_SEGMENT as f64;
         let at = |n: usize| path.at(pair[0].time + step * n as f64);
         let mut before = at(0);
-        for n in 1..=STEPS {
+        for n in 1..=STEPS_PER_SEGMENT {
             let here = at(n);
             if let (Some(from), Some(to)) = (&before, &here) {
                 let motion = motion_between(from, to);
@@ -128,25 +128,29 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
         sum
     };
     let motions: Vec<CameraChange> = keys.windows(2).map(segment).collect();
-    let way: f64 = motions.iter().map(|motion| motion.distance).sum();
+    let path_length: f64 = motions.iter().map(|motion| motion.distance).sum();
     // If the camera never moves, only rotations and zooms count.
-    let radian = if way > 0.0 { way * TURN_SHARE } else { 1.0 };
+    let length_per_radian = if path_length > 0.0 {
+        path_length * TURN_SHARE
+    } else {
+        1.0
+    };
     let length = |motion: &CameraChange| {
         let turned = motion.turn.to_radians().max(motion.zoom);
-        motion.distance.max(turned * radian)
+        motion.distance.max(turned * length_per_radian)
     };
     motions.iter().map(length).collect()
 }
 
 fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
     let lengths = lengths(keys);
-    let held: f64 = keys
+    let hold_seconds: f64 = keys
         .windows(2)
         .filter(|pair| pair[0].interpolation == Interpolation::Hold)
         .map(|pair| pair[1].time - pair[0].time)
         .sum();
     let (start, end) = (keys[0].time, keys[keys.len() - 1].time);
-    let seconds_per_length = (end - start - held) / lengths.iter().sum::<f64>();
+    let seconds_per_length = (end - start - hold_seconds) / lengths.iter().sum::<f64>();
     if !seconds_per_length.is_finite() {
         return keys.to_vec();
     }
@@ -154,7 +158,7 @@ fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         if keys[i].interpolation == Interpolation::Hold {
             keys[i + 1].time - keys[i].time
         } else {
-            (lengths[i] * seconds_per_length).max(CLOSEST)
+            (lengths[i] * seconds_per_length).max(MIN_KEY_GAP)
         }
     };
     let mut retimed = with_steps(keys, step);
@@ -171,8 +175,8 @@ fn constant_speed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
 fn pauses(keys: &[Key<Camera>]) -> Vec<bool> {
     let lengths = lengths(keys);
     let seconds = |i: usize| keys[i + 1].time - keys[i].time;
-    let all: f64 = (0..lengths.len()).map(seconds).sum();
-    let mean = lengths.iter().sum::<f64>() / all;
+    let total: f64 = (0..lengths.len()).map(seconds).sum();
+    let mean = lengths.iter().sum::<f64>() / total;
     let is_pause = |i: usize| {
         let is_cut = keys[i].interpolation == Interpolation::Hold;
         !is_cut && lengths[i] / seconds(i) <= mean * PAUSE_SHARE
@@ -219,9 +223,9 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
 /// Returns the keys with new time steps between them.
 fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Camera>> {
     let mut time = keys[0].time;
-    let mut later = Vec::new();
+    let mut retimed = Vec::new();
     for (index, key) in keys.iter().enumerate() {
-        later.push(Key {
+        retimed.push(Key {
             time,
             ..key.clone()
         });
@@ -229,7 +233,7 @@ fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Came
             time += step(index);
         }
     }
-    later
+    retimed
 }
 
 fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
@@ -254,9 +258,9 @@ fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
         let turn = |of: fn(&Orientation) -> f64| {
             let here = of(&middle);
             straight(
-                nearest(of(&angles[0]), here),
+                nearest_equivalent(of(&angles[0]), here),
                 here,
-                nearest(of(&angles[2]), here),
+                nearest_equivalent(of(&angles[2]), here),
             )
         };
         let turned = Orientation {
@@ -264,9 +268,9 @@ fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
             pitch: turn(|angles| angles.pitch),
             roll: turn(|angles| angles.roll),
         };
-        let place = before.position + (after.position - before.position) * share;
+        let straight_position = before.position + (after.position - before.position) * share;
         smooth[i].value = turned.apply(&Camera {
-            position: (here.position + place) * 0.5,
+            position: (here.position + straight_position) * 0.5,
             ..here.clone()
         });
     }

@@ -12,7 +12,7 @@ use crate::scene::{Camera, Interpolation, Key, SAME_TIME, Sample, Take};
 const REACH: usize = 3;
 
 /// Smallest shift of the picture that counts as a jump, in image heights.
-const JUMP: f64 = 0.02;
+const MIN_JUMP: f64 = 0.02;
 /// Smallest ratio of a jump to the usual shift.
 const JUMP_FACTOR: f64 = 6.0;
 /// Number of steps on each side from which the usual shift is determined.
@@ -39,51 +39,51 @@ pub struct Simplified {
     /// The keys, at times of samples.
     pub keys: Vec<Key<Camera>>,
     /// Largest deviation of the picture at any sample.
-    pub worst: Worst,
+    pub worst: WorstDeviation,
     /// Number of jumps: shifts of the picture from one sample to the next that are larger than by hand.
     pub jumps: usize,
 }
 
 /// The largest deviation of keys from a take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Worst {
+pub struct WorstDeviation {
     /// Deviation of the picture, in image heights.
-    pub off: f64,
+    pub deviation: f64,
     /// When it occurs, in seconds of the keys.
     pub time: f64,
 }
 
 /// Returns the largest shift of the landmarks in the picture of another camera, in image heights. Infinite if one
 /// is behind that camera.
-pub fn deviation(camera: &Camera, seen: &[Landmark]) -> f64 {
+pub fn deviation(camera: &Camera, landmarks: &[Landmark]) -> f64 {
     let Some(framing) = camera.framing() else {
         return f64::INFINITY;
     };
-    let off = seen.iter().map(|seen| {
-        let place = if seen.is_sky {
-            framing.project_direction(seen.what)
+    let shifts = landmarks.iter().map(|landmark| {
+        let projected = if landmark.is_sky {
+            framing.project_direction(landmark.what)
         } else {
-            framing.project(seen.what)
+            framing.project(landmark.what)
         };
-        let apart = |[x, y]: [f64; 2]| (x - seen.at[0]).hypot(y - seen.at[1]);
-        place.map_or(f64::INFINITY, apart)
+        let distance = |[x, y]: [f64; 2]| (x - landmark.at[0]).hypot(y - landmark.at[1]);
+        projected.map_or(f64::INFINITY, distance)
     });
-    off.fold(0.0, f64::max)
+    shifts.fold(0.0, f64::max)
 }
 
-/// Chooses keys at as few samples as needed for a deviation of at most `tolerance` image heights everywhere. `seen`
-/// holds the landmarks of each sample.
+/// Chooses keys at as few samples as needed for a deviation of at most `tolerance` image heights everywhere.
+/// `landmarks` holds those of each sample.
 ///
 /// Hands tremble: if the tolerance allows, the keys are taken from a smoothed flight, which itself deviates by at
 /// most half the tolerance.
-pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplified {
-    let (cuts, jumps) = (cuts(take), jumps(take, seen));
+pub fn simplify(take: &Take, landmarks: &[Vec<Landmark>], tolerance: f64) -> Simplified {
+    let (cuts, jumps) = (cuts(take), jumps(take, landmarks));
     let edges: BTreeSet<usize> = cuts.union(&jumps).copied().collect();
     let search = Search {
         take,
         // Jumps must not be smoothed.
-        cameras: smoothed_cameras(take, &edges, seen, tolerance / 2.0),
-        seen,
+        cameras: smoothed_cameras(take, &edges, landmarks, tolerance / 2.0),
+        landmarks,
         tolerance,
         cuts,
         edges,
@@ -93,7 +93,7 @@ pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplifi
     // Where keys coincide, a curve is shaped by keys farther away than pruning considers.
     let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
-    let worst = worst_off(&CameraPath::new(&keys), take, seen, ends_of(&keys));
+    let worst = worst_deviation(&CameraPath::new(&keys), take, landmarks, ends_of(&keys));
     let jumps = jumps.len();
     Simplified { keys, worst, jumps }
 }
@@ -102,23 +102,23 @@ pub fn simplify(take: &Take, seen: &[Vec<Landmark>], tolerance: f64) -> Simplifi
 fn smoothed_cameras(
     take: &Take,
     cuts: &BTreeSet<usize>,
-    seen: &[Vec<Landmark>],
+    landmarks: &[Vec<Landmark>],
     tolerance: f64,
 ) -> Vec<Camera> {
-    let is_near = |cameras: &Vec<Camera>| {
-        let mut pairs = cameras.iter().zip(seen);
-        pairs.all(|(camera, seen)| deviation(camera, seen) <= tolerance)
+    let is_within_tolerance = |cameras: &Vec<Camera>| {
+        let mut pairs = cameras.iter().zip(landmarks);
+        pairs.all(|(camera, landmarks)| deviation(camera, landmarks) <= tolerance)
     };
     let smooth = SMOOTHING
         .iter()
         .map(|&seconds| smoothed(take, cuts, seconds));
-    let mut smooth = smooth.filter(is_near);
-    let plain = || {
+    let mut smooth = smooth.filter(is_within_tolerance);
+    let unsmoothed = || {
         (0..take.samples.len())
             .filter_map(|n| take.camera(n))
             .collect()
     };
-    smooth.next().unwrap_or_else(plain)
+    smooth.next().unwrap_or_else(unsmoothed)
 }
 
 /// Returns the times of the first and the last key; `None` without keys.
@@ -126,33 +126,40 @@ pub fn ends_of(keys: &[Key<Camera>]) -> Option<(f64, f64)> {
     Some((keys.first()?.time, keys.last()?.time))
 }
 
-/// Returns the largest deviation of a path from a take. `flown` is the time span of the path in which the take is
+/// Returns the largest deviation of a path from a take. `span` is the time span of the path in which the take is
 /// flown. Samples before the first and after the last key are ignored.
-pub fn worst_off(
+pub fn worst_deviation(
     path: &CameraPath,
     take: &Take,
-    seen: &[Vec<Landmark>],
-    flown: Option<(f64, f64)>,
-) -> Worst {
+    landmarks: &[Vec<Landmark>],
+    span: Option<(f64, f64)>,
+) -> WorstDeviation {
     let (Some((start, end)), Some(ends), [first, .., last]) =
-        (flown, ends_of(path.keys()), &take.samples[..])
+        (span, ends_of(path.keys()), &take.samples[..])
     else {
-        let off = f64::INFINITY;
-        return Worst { off, time: 0.0 };
+        let deviation = f64::INFINITY;
+        return WorstDeviation {
+            deviation,
+            time: 0.0,
+        };
     };
     let scale = (end - start) / (last.0 - first.0);
     let time_of = |sample: &Sample| start + (sample.0 - first.0) * scale;
-    let between = ends.0 - SAME_TIME..=ends.1 + SAME_TIME;
-    let samples = take.samples.iter().zip(seen);
-    let samples = samples.filter(|(sample, _)| between.contains(&time_of(sample)));
-    let off = samples.map(|(sample, seen)| {
+    let covered = ends.0 - SAME_TIME..=ends.1 + SAME_TIME;
+    let samples = take.samples.iter().zip(landmarks);
+    let samples = samples.filter(|(sample, _)| covered.contains(&time_of(sample)));
+    let deviations = samples.map(|(sample, landmarks)| {
         let time = time_of(sample);
         let camera = path.at(time);
-        let off = camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen));
-        Worst { off, time }
+        let deviation = camera.map_or(f64::INFINITY, |camera| deviation(&camera, landmarks));
+        WorstDeviation { deviation, time }
     });
-    off.fold(Worst::default(), |worst, this| {
-        if this.off > worst.off { this } else { worst }
+    deviations.fold(WorstDeviation::default(), |worst, candidate| {
+        if candidate.deviation > worst.deviation {
+            candidate
+        } else {
+            worst
+        }
     })
 }
 
@@ -160,7 +167,7 @@ struct Search<'t> {
     take: &'t Take,
     /// The camera of each sample, from which keys are made.
     cameras: Vec<Camera>,
-    seen: &'t [Vec<Landmark>],
+    landmarks: &'t [Vec<Landmark>],
     tolerance: f64,
     /// The last samples before changes of projection.
     cuts: BTreeSet<usize>,
@@ -179,11 +186,11 @@ fn cuts(take: &Take) -> BTreeSet<usize> {
 
 /// Returns the samples after which the picture shifts much farther than around them: a script or a touchpad moved
 /// the mouse, or the machine was busy.
-fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
+fn jumps(take: &Take, landmarks: &[Vec<Landmark>]) -> BTreeSet<usize> {
     let cameras = (1..take.samples.len()).map(|n| take.camera(n));
     let steps: Vec<f64> = cameras
-        .zip(seen)
-        .map(|(camera, seen)| camera.map_or(0.0, |camera| deviation(&camera, seen)))
+        .zip(landmarks)
+        .map(|(camera, landmarks)| camera.map_or(0.0, |camera| deviation(&camera, landmarks)))
         .collect();
     let is_jump = |n: &usize| {
         let around = n.saturating_sub(JUMP_WINDOW)..(n + 1 + JUMP_WINDOW).min(steps.len());
@@ -196,8 +203,8 @@ fn jumps(take: &Take, seen: &[Vec<Landmark>]) -> BTreeSet<usize> {
         let near = n.saturating_sub(2)..(n + 3).min(steps.len());
         let mut near: Vec<f64> = near.map(|near| steps[near]).collect();
         near.sort_by(f64::total_cmp);
-        let third = near.iter().rev().nth(2).copied().unwrap_or(0.0);
-        steps[*n] > JUMP.max(usual.max(third) * JUMP_FACTOR)
+        let third_largest = near.iter().rev().nth(2).copied().unwrap_or(0.0);
+        steps[*n] > MIN_JUMP.max(usual.max(third_largest) * JUMP_FACTOR)
     };
     (0..steps.len()).filter(is_jump).collect()
 }
@@ -215,16 +222,16 @@ impl Search<'_> {
         chosen.filter_map(key).collect()
     }
 
-    fn off(&self, path: &CameraPath, sample: usize) -> f64 {
+    fn deviation_at(&self, path: &CameraPath, sample: usize) -> f64 {
         let camera = path.at(self.take.samples[sample].0);
-        let seen = self.seen.get(sample).map_or(&[][..], Vec::as_slice);
-        camera.map_or(f64::INFINITY, |camera| deviation(&camera, seen))
+        let landmarks = self.landmarks.get(sample).map_or(&[][..], Vec::as_slice);
+        camera.map_or(f64::INFINITY, |camera| deviation(&camera, landmarks))
     }
 
     /// Returns the sample with the largest deviation, if that exceeds the tolerance.
     fn worst(&self, path: &CameraPath, samples: impl Iterator<Item = usize>) -> Option<usize> {
-        let off = samples.map(|sample| (sample, self.off(path, sample)));
-        let worst = off.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let deviations = samples.map(|sample| (sample, self.deviation_at(path, sample)));
+        let worst = deviations.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (worst.1 > self.tolerance).then_some(worst.0)
     }
 
@@ -238,9 +245,9 @@ impl Search<'_> {
     /// Adds the worst sample of each stretch until no deviation exceeds the tolerance.
     fn refined(&self, mut chosen: BTreeSet<usize>) -> BTreeSet<usize> {
         loop {
-            let places: Vec<usize> = chosen.iter().copied().collect();
-            let path = CameraPath::new(&self.keys(places.iter().copied()));
-            let stretches = places.windows(2);
+            let samples: Vec<usize> = chosen.iter().copied().collect();
+            let path = CameraPath::new(&self.keys(samples.iter().copied()));
+            let stretches = samples.windows(2);
             let worst: Vec<usize> = stretches
                 .filter_map(|ends| self.worst(&path, ends[0] + 1..ends[1]))
                 .collect();
@@ -259,20 +266,20 @@ impl Search<'_> {
             if self.edges.contains(&sample) || (sample > 0 && self.edges.contains(&(sample - 1))) {
                 continue;
             }
-            let mut around: Vec<usize> = chosen
+            let mut window: Vec<usize> = chosen
                 .range(..sample)
                 .rev()
                 .take(REACH + 1)
                 .copied()
                 .collect();
-            around.reverse();
-            let before = around.len();
-            around.extend(chosen.range(sample + 1..).take(REACH + 1));
-            let path = CameraPath::new(&self.keys(around.iter().copied()));
+            window.reverse();
+            let before = window.len();
+            window.extend(chosen.range(sample + 1..).take(REACH + 1));
+            let path = CameraPath::new(&self.keys(window.iter().copied()));
             // The outermost stretches also depend on keys outside the window.
-            let first = around[usize::from(before > REACH)];
-            let is_cut_off = around.len() - before > REACH;
-            let last = around[around.len() - 1 - usize::from(is_cut_off)];
+            let first = window[usize::from(before > REACH)];
+            let is_cut_off = window.len() - before > REACH;
+            let last = window[window.len() - 1 - usize::from(is_cut_off)];
             if self.worst(&path, first..=last).is_none() {
                 chosen.remove(&sample);
             }

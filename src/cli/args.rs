@@ -16,10 +16,10 @@ pub const MAX_TIMES: u32 = 1_000_000;
 #[derive(Clone, Copy, Debug, Args)]
 pub struct SizeArgs {
     /// Width in pixels; without --height, the aspect ratio of the scene is kept
-    #[arg(long, value_parser = whole::<1, MAX_SIDE>, allow_negative_numbers = true)]
+    #[arg(long, value_parser = whole_number::<1, MAX_SIDE>, allow_negative_numbers = true)]
     width: Option<u32>,
     /// Height in pixels; without --width, the aspect ratio of the scene is kept
-    #[arg(long, value_parser = whole::<1, MAX_SIDE>, allow_negative_numbers = true)]
+    #[arg(long, value_parser = whole_number::<1, MAX_SIDE>, allow_negative_numbers = true)]
     height: Option<u32>,
 }
 
@@ -27,21 +27,24 @@ pub struct SizeArgs {
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct ThreadsArgs {
     /// Tracing threads [default: one per core]
-    #[arg(long, value_parser = whole::<1, MAX_THREADS>, allow_negative_numbers = true)]
+    #[arg(long, value_parser = whole_number::<1, MAX_THREADS>, allow_negative_numbers = true)]
     threads: Option<u32>,
 }
 
 impl SizeArgs {
-    /// Width and height; if only one side is given, the aspect ratio of `own`, the scene's size, is kept.
+    /// Width and height; if only one side is given, the aspect ratio of `scene_size`, the scene's size, is kept.
     ///
     /// # Errors
     /// [`CliError::Usage`], if the other side would be longer than a picture can be.
-    pub fn of(self, own: (u32, u32)) -> Result<(u32, u32), CliError> {
+    pub fn of(self, scene_size: (u32, u32)) -> Result<(u32, u32), CliError> {
         Ok(match (self.width, self.height) {
-            (None, None) => own,
+            (None, None) => scene_size,
             (Some(width), Some(height)) => (width, height),
-            (Some(width), None) => (width, in_proportion("height", width, (own.1, own.0))?),
-            (None, Some(height)) => (in_proportion("width", height, own)?, height),
+            (Some(width), None) => (
+                width,
+                proportional_side("height", width, (scene_size.1, scene_size.0))?,
+            ),
+            (None, Some(height)) => (proportional_side("width", height, scene_size)?, height),
         })
     }
 }
@@ -56,19 +59,19 @@ impl ThreadsArgs {
     }
 }
 
-/// Parses an integer from `LEAST` to `MOST`.
+/// Parses an integer from `MIN` to `MAX`.
 ///
 /// # Errors
 /// A message that gives the range, for any other word.
-pub fn whole<const LEAST: u32, const MOST: u32>(word: &str) -> Result<u32, String> {
+pub fn whole_number<const MIN: u32, const MAX: u32>(word: &str) -> Result<u32, String> {
     let number = word.parse().ok();
     number
-        .filter(|number| (LEAST..=MOST).contains(number))
-        .ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}"))
+        .filter(|number| (MIN..=MAX).contains(number))
+        .ok_or_else(|| format!("expected a whole number from {MIN} to {MAX}"))
 }
 
 /// The side called `name`: `given · numerator / denominator`, rounded.
-fn in_proportion(
+fn proportional_side(
     name: &str,
     given: u32,
     (numerator, denominator): (u32, u32),
@@ -106,9 +109,9 @@ mod tests {
 
     #[test]
     fn numbers_are_whole_and_within_what_there_is() {
-        assert_eq!(whole::<1, 256>("256"), Ok(256));
+        assert_eq!(whole_number::<1, 256>("256"), Ok(256));
         for wrong in ["", "0", "257", "1e1", "1.0", "-1", " 2", "99999999999"] {
-            let said = whole::<1, 256>(wrong).expect_err(wrong);
+            let said = whole_number::<1, 256>(wrong).expect_err(wrong);
             assert_eq!(said, "expected a whole number from 1 to 256");
         }
     }

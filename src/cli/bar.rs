@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 pub const TICK: Duration = Duration::from_millis(100);
 
 /// Template for work without countable steps.
-pub const SHARE: &str = "{bar:32} {percent:>3} %  {eta} left";
+pub const SHARE_TEMPLATE: &str = "{bar:32} {percent:>3} %  {eta} left";
 
 /// A bar of `length` steps. Draws to stderr, and only if that is a terminal.
 pub fn progress_bar(length: u64, template: &str) -> ProgressBar {

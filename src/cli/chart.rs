@@ -8,10 +8,10 @@ use std::time::Duration;
 use clap::Args;
 
 use super::action::CliAction;
-use super::args::{ThreadsArgs, whole};
-use super::bar::{SHARE, progress_bar};
+use super::args::{ThreadsArgs, whole_number};
+use super::bar::{SHARE_TEMPLATE, progress_bar};
 use super::error::{CliError, report_warning, say};
-use super::goal::{error, time};
+use super::goal::{parse_error, parse_time};
 use super::scene::read_scene;
 use super::target::{check_table, picture_format};
 use crate::export::write_text;
@@ -27,13 +27,13 @@ use crate::trace::{RenderControl, Threads};
 use crate::words::{capitalised, counted};
 
 /// Most primitives of a scene in which growth is measured.
-const MOST_PRIMITIVES: u32 = 1_000_000;
+const MAX_PRIMITIVES: u32 = 1_000_000;
 /// Sides of the picture, in pixels: room for the words, and less than what a screen is out of.
-const SIDES: RangeInclusive<u32> = 480..=8192;
+const PICTURE_SIDES: RangeInclusive<u32> = 480..=8192;
 /// Default size of the picture for few scenes, in pixels.
-const SIZE: (u32, u32) = (1600, 960);
+const DEFAULT_SIZE: (u32, u32) = (1600, 960);
 /// Steps of the progress bar.
-const BAR: u64 = 1000;
+const BAR_STEPS: u64 = 1000;
 
 #[derive(Debug, Args)]
 pub struct ChartArgs {
@@ -48,7 +48,7 @@ pub struct ChartArgs {
     #[arg(long, requires = "scenes", conflicts_with_all = ["growth", "within", "budget", "povray", "threads"])]
     cores: bool,
     /// Longer side of the compared pictures, in pixels
-    #[arg(long, default_value = "256", value_parser = whole::<8, 2048>, allow_negative_numbers = true)]
+    #[arg(long, default_value = "256", value_parser = whole_number::<8, 2048>, allow_negative_numbers = true)]
     side: u32,
     /// Write all measurements to this CSV file
     #[arg(long, value_name = "FILE")]
@@ -60,13 +60,13 @@ pub struct ChartArgs {
     #[arg(long, value_name = "THEME", default_value = "dark")]
     theme: PictureTheme,
     /// Size of the picture in pixels [default: 1600x960, larger for many scenes]
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = picture_size)]
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_picture_size)]
     size: Option<(u32, u32)>,
     /// Name the cheapest method whose error is at most this: 55dB, or an RMSE (linear, 0–1)
-    #[arg(long, value_name = "ERROR", value_parser = error)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_error)]
     within: Option<f64>,
     /// Name the most accurate method within this time: 16ms, 2s, or a number of milliseconds
-    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true)]
     budget: Option<Duration>,
     /// Include POV-Ray, an independent renderer, if it is installed
     #[arg(long)]
@@ -83,9 +83,9 @@ enum PictureTheme {
 }
 
 impl ChartArgs {
-    fn look(&self) -> PictureLook {
+    fn picture_look(&self) -> PictureLook {
         let least = self.least_size();
-        let usual = (SIZE.0.max(least.0), SIZE.1.max(least.1));
+        let usual = (DEFAULT_SIZE.0.max(least.0), DEFAULT_SIZE.1.max(least.1));
         PictureLook {
             is_light: self.theme == PictureTheme::Light,
             size: self.size.unwrap_or(usual),
@@ -114,7 +114,7 @@ impl ChartArgs {
     }
 
     /// The action that draws a figure, if a picture was requested.
-    fn drawn(&self, figure: Figure) -> Option<CliAction> {
+    fn draw_action(&self, figure: Figure) -> Option<CliAction> {
         let path = self.png.clone();
         path.map(|path| CliAction::Draw { figure, path })
     }
@@ -138,13 +138,13 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     }
     let threads = args.threads.start()?;
     if args.growth {
-        return grow(args, &threads);
+        return measure_growth(args, &threads);
     }
     // So is a scene that cannot be read.
     let scenes = args.scenes.iter().map(|path| Ok((path, read_scene(path)?)));
     let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
     if args.cores {
-        return share(args, &scenes);
+        return simulate_cores(args, &scenes);
     }
     let mut studies = Vec::new();
     for (path, scene) in scenes {
@@ -175,8 +175,8 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
         write_text(path, &csv(&studies, &machine, threads.count())?)?;
     }
     let machine = format!("{}, {}", counted(threads.count(), "thread"), processor());
-    let look = args.look();
-    Ok(args.drawn(Figure::Chart {
+    let look = args.picture_look();
+    Ok(args.draw_action(Figure::Chart {
         studies,
         machine,
         look,
@@ -186,33 +186,38 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
 /// Name of a scene: the stem of its file, or its whole path if other scenes have the same stem.
 fn name_of(path: &Path, scenes: &[PathBuf]) -> String {
     let name = |path: &Path| capitalised(&path.file_stem().unwrap_or_default().to_string_lossy());
-    let own = name(path);
-    let alike = scenes.iter().filter(|other| name(other) == own);
-    if alike.count() == 1 {
-        own
+    let stem = name(path);
+    let same_stem = scenes.iter().filter(|other| name(other) == stem);
+    if same_stem.count() == 1 {
+        stem
     } else {
         path.display().to_string()
     }
 }
 
 /// Parses a size such as `1600x960`.
-fn picture_size(text: &str) -> Result<(u32, u32), String> {
+fn parse_picture_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', '×']);
-    let side = |text: &str| text.trim().parse().ok().filter(|side| SIDES.contains(side));
+    let side = |text: &str| {
+        text.trim()
+            .parse()
+            .ok()
+            .filter(|side| PICTURE_SIDES.contains(side))
+    };
     let size = sides.and_then(|(width, height)| Some((side(width)?, side(height)?)));
-    let (least, most) = (SIDES.start(), SIDES.end());
+    let (least, most) = (PICTURE_SIDES.start(), PICTURE_SIDES.end());
     size.ok_or_else(|| format!("expected a size such as 1600x960, sides from {least} to {most}"))
 }
 
 /// Measures how time grows with the number of primitives, and prints and writes the costs.
-fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
-    let mut growth = Growth::new(args.side, MOST_PRIMITIVES);
+fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
+    let mut growth = Growth::new(args.side, MAX_PRIMITIVES);
     if args.povray {
         growth = growth.with_povray();
     }
-    let bar = progress_bar(BAR, SHARE);
+    let bar = progress_bar(BAR_STEPS, SHARE_TEMPLATE);
     while threads.run(|| growth.step()) {
-        bar.set_position((growth.progress() * BAR as f64) as u64);
+        bar.set_position((growth.progress() * BAR_STEPS as f64) as u64);
     }
     bar.finish_and_clear();
     for obstacle in &growth.obstacles {
@@ -231,11 +236,14 @@ fn grow(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliErr
     if let Some(path) = &args.csv {
         write_text(path, &growth.csv()?)?;
     }
-    Ok(args.drawn(Figure::Growth(growth, args.look())))
+    Ok(args.draw_action(Figure::Growth(growth, args.picture_look())))
 }
 
 /// Simulates how more cores would share the pictures of the scenes, and prints and writes the figures.
-fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAction>, CliError> {
+fn simulate_cores(
+    args: &ChartArgs,
+    scenes: &[(&PathBuf, Scene)],
+) -> Result<Option<CliAction>, CliError> {
     // One thread, because planning is done by one worker alone.
     let alone = Threads::new(Some(1))?;
     let mut pictures = Vec::new();
@@ -261,14 +269,14 @@ fn share(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<Option<CliAct
     if let Some(path) = &args.csv {
         write_text(path, &scaling_csv(&pictures)?)?;
     }
-    Ok(args.drawn(Figure::Scaling(pictures, args.look())))
+    Ok(args.draw_action(Figure::Scaling(pictures, args.picture_look())))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {
-    let bar = progress_bar(BAR, SHARE);
+    let bar = progress_bar(BAR_STEPS, SHARE_TEMPLATE);
     let control = RenderControl::default();
     while threads.run(|| study.step(&control)) {
-        bar.set_position((study.progress() * BAR as f64) as u64);
+        bar.set_position((study.progress() * BAR_STEPS as f64) as u64);
     }
     bar.finish_and_clear();
 }
@@ -317,9 +325,9 @@ mod tests {
             povray: false,
             threads: ThreadsArgs::default(),
         };
-        assert_eq!(args(1, None).look().size, SIZE);
-        assert_eq!(args(9, None).look().size, SIZE);
-        assert_eq!(args(16, None).look().size, (1920, 1240));
+        assert_eq!(args(1, None).picture_look().size, DEFAULT_SIZE);
+        assert_eq!(args(9, None).picture_look().size, DEFAULT_SIZE);
+        assert_eq!(args(16, None).picture_look().size, (1920, 1240));
         assert!(args(1, Some((480, 480))).check_size().is_ok());
         let problem = args(3, Some((480, 480))).check_size().expect_err("cut off");
         let expected = "3 charts need a picture of 960x680 pixels or more";

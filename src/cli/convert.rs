@@ -77,11 +77,11 @@ fn in_real_folder(path: PathBuf) -> PathBuf {
 }
 
 fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
-    let whole = |path: &Path| {
-        let named = |error| CliError::usage(format!("{}: {error}", path.display()));
-        absolute(path).map_err(named)
+    let absolute_path = |path: &Path| {
+        let with_path = |error| CliError::usage(format!("{}: {error}", path.display()));
+        absolute(path).map_err(with_path)
     };
-    let (mut input, mut output) = (whole(&args.input)?, whole(&args.output)?);
+    let (mut input, mut output) = (absolute_path(&args.input)?, absolute_path(&args.output)?);
     let is_below = |input: &Path, output: &Path| {
         let folder = output.parent();
         folder.is_some_and(|folder| input.starts_with(folder))

@@ -36,8 +36,10 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
     let failed = |error| CliError::failed(format!("{}: {error}", manual.display()));
     make_folder(&manual).map_err(failed)?;
     clap_mangen::generate_to(command.clone(), &manual).map_err(failed)?;
-    let commands = command.get_subcommands().filter(|one| !one.is_hide_set());
-    let names = commands.map(|one| format!("glint-{}.1", one.get_name()));
+    let commands = command
+        .get_subcommands()
+        .filter(|subcommand| !subcommand.is_hide_set());
+    let names = commands.map(|subcommand| format!("glint-{}.1", subcommand.get_name()));
     for page in ["glint.1".to_owned()].into_iter().chain(names) {
         say(&manual.join(page).display().to_string());
     }
@@ -51,10 +53,10 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
 
 /// The user's data folder, according to the XDG Base Directory Specification.
 fn data_folder() -> Option<PathBuf> {
-    let set = |name| env::var_os(name).map(PathBuf::from);
-    let own = set("XDG_DATA_HOME").filter(|folder| folder.is_absolute());
-    let home = set("HOME").filter(|folder| folder.is_absolute());
-    own.or_else(|| home.map(|home| home.join(".local/share")))
+    let path_var = |name| env::var_os(name).map(PathBuf::from);
+    let data_home = path_var("XDG_DATA_HOME").filter(|folder| folder.is_absolute());
+    let home = path_var("HOME").filter(|folder| folder.is_absolute());
+    data_home.or_else(|| home.map(|home| home.join(".local/share")))
 }
 
 /// A menu entry according to the Desktop Entry Specification.

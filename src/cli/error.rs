@@ -92,20 +92,20 @@ impl From<serde_json::Error> for CliError {
 }
 
 /// Why a result could not be written to stdout.
-static LOST: OnceLock<String> = OnceLock::new();
+static STDOUT_ERROR: OnceLock<String> = OnceLock::new();
 
 /// Prints a line of results to stdout. A closed pipe is not an error; [`finish`] reports any other one.
 pub fn say(line: &str) {
     if let Err(error) = writeln!(std::io::stdout(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe
     {
-        let _ = LOST.set(error.to_string());
+        let _ = STDOUT_ERROR.set(error.to_string());
     }
 }
 
 /// Returns the exit code of a command: `code`, or a failure if a result could not be written.
 pub fn finish(code: ExitCode) -> ExitCode {
-    match LOST.get() {
+    match STDOUT_ERROR.get() {
         None => code,
         Some(why) => {
             report_error(&format!("results could not be written to stdout: {why}"));

@@ -32,7 +32,7 @@ struct SequenceArgs {
     #[arg(long, value_name = "PATTERN", default_value = "rayTrace%d", value_parser = Pattern::parse)]
     name: Pattern,
     /// Format of the frames: ppm, png or exr (the same values, 0–1, unrounded)
-    #[arg(long, default_value = "ppm", value_parser = format_of, value_hint = ValueHint::Other)]
+    #[arg(long, default_value = "ppm", value_parser = parse_format, value_hint = ValueHint::Other)]
     format: Format,
     #[command(flatten)]
     size: SizeArgs,
@@ -74,7 +74,7 @@ pub struct JobArgs {
     output: PathBuf,
 }
 
-fn format_of(word: &str) -> Result<Format, String> {
+fn parse_format(word: &str) -> Result<Format, String> {
     Format::of_ending(word).ok_or_else(|| "expected ppm, png or exr".to_owned())
 }
 
@@ -103,8 +103,9 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     if let Some((path, video)) = video {
         let remark = video.check(&sequence).map_err(CliError::usage)?;
         // The video may go into the folder of the frames, which need not exist yet.
-        let of_video = path.parent().and_then(|folder| absolute(folder).ok());
-        let is_with_frames = of_video.is_some() && of_video == absolute(&sequence.folder).ok();
+        let video_folder = path.parent().and_then(|folder| absolute(folder).ok());
+        let is_with_frames =
+            video_folder.is_some() && video_folder == absolute(&sequence.folder).ok();
         if is_with_frames && !args.dry_run {
             sequence.prepare()?;
         }
@@ -119,7 +120,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
         }
     }
     if args.dry_run {
-        return tell_missing(&sequence);
+        return report_missing(&sequence);
     }
     let threads = args.threads.start()?;
     let start = Instant::now();
@@ -134,13 +135,13 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             args.openjd,
             "{spinner} {bar:32} {pos}/{len} frames encoded",
         );
-        let tell = |frames| {
+        let on_frame = |frames| {
             bar.set_position(frames as u64);
             true
         };
-        let made = threads.run(|| video.make(&sequence, path, tell));
+        let result = threads.run(|| video.make(&sequence, path, on_frame));
         bar.finish_and_clear();
-        made.map_err(CliError::failed)?;
+        result.map_err(CliError::failed)?;
     }
     reporter.end();
     if let Some((path, video)) = video {
@@ -157,7 +158,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn tell_missing(sequence: &Sequence) -> Result<(), CliError> {
+fn report_missing(sequence: &Sequence) -> Result<(), CliError> {
     let missing = sequence.missing()?;
     let total = sequence.frames.count();
     let count = counted(missing.count(), "frame");
@@ -171,21 +172,21 @@ fn export(
     threads: &Threads,
     reporter: &mut ProgressReporter,
 ) -> Result<Exported, CliError> {
-    let again =
+    let hint =
         "; finished frames are kept: once this is fixed, the same command resumes the export";
-    let failed = |error: ExportError| CliError::failed(format!("{error}{again}"));
+    let failed = |error: ExportError| CliError::failed(format!("{error}{hint}"));
     let mut exporting = Exporting::new(sequence)?.side_by_side();
     let control = RenderControl::default();
     threads.run(|| {
         loop {
             match exporting.step(&control) {
-                ExportStep::Going => reporter.tell(exporting.done()),
+                ExportStep::Going => reporter.report(exporting.done()),
                 ExportStep::Done | ExportStep::Stopped => break,
                 ExportStep::Failed(error) => return Err(failed(error)),
             }
         }
         let done = exporting.finish().map_err(failed)?;
-        reporter.tell(done);
+        reporter.report(done);
         Ok(done)
     })
 }
@@ -206,7 +207,7 @@ struct ProgressReporter {
     bar: ProgressBar,
     is_openjd: bool,
     /// What was last reported: the number of finished frames, and the line with their share.
-    told: Option<usize>,
+    reported: Option<usize>,
     line: String,
 }
 
@@ -217,14 +218,14 @@ impl ProgressReporter {
         Self {
             bar,
             is_openjd,
-            told: None,
+            reported: None,
             line: String::new(),
         }
     }
 
-    fn tell(&mut self, done: Exported) {
+    fn report(&mut self, done: Exported) {
         let so_far = done.so_far();
-        if self.told.replace(so_far) == Some(so_far) {
+        if self.reported.replace(so_far) == Some(so_far) {
             return;
         }
         if self.bar.position() == 0 && so_far > 0 {

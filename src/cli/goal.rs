@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 /// Parses an error such as `55dB`, or `0.0018` as the root mean square over linear colours from 0 to 1.
-pub fn error(word: &str) -> Result<f64, String> {
+pub fn parse_error(word: &str) -> Result<f64, String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
     let rmse = match word.to_ascii_lowercase().strip_suffix("db") {
         Some(decibels) => number(decibels).map(|decibels| 10.0_f64.powf(decibels / -20.0)),
@@ -16,7 +16,7 @@ pub fn error(word: &str) -> Result<f64, String> {
 }
 
 /// Parses a time such as `16ms` or `2s`; a number alone is in milliseconds.
-pub fn time(word: &str) -> Result<Duration, String> {
+pub fn parse_time(word: &str) -> Result<Duration, String> {
     let word = word.to_ascii_lowercase();
     let (number, millis) = if let Some(millis) = word.strip_suffix("ms") {
         (millis, 1.0)
@@ -36,17 +36,17 @@ mod tests {
 
     #[test]
     fn errors_and_times_have_their_units() {
-        assert!((error("60dB").expect("decibels") - 1e-3).abs() < 1e-12);
-        assert_eq!(error("0.002"), Ok(0.002));
-        assert_eq!(time("16ms"), Ok(Duration::from_millis(16)));
-        assert_eq!(time("2 s"), Ok(Duration::from_secs(2)));
-        assert_eq!(time("4"), Ok(Duration::from_millis(4)));
-        assert_eq!(time("16MS"), Ok(Duration::from_millis(16)));
+        assert!((parse_error("60dB").expect("decibels") - 1e-3).abs() < 1e-12);
+        assert_eq!(parse_error("0.002"), Ok(0.002));
+        assert_eq!(parse_time("16ms"), Ok(Duration::from_millis(16)));
+        assert_eq!(parse_time("2 s"), Ok(Duration::from_secs(2)));
+        assert_eq!(parse_time("4"), Ok(Duration::from_millis(4)));
+        assert_eq!(parse_time("16MS"), Ok(Duration::from_millis(16)));
         for wrong in ["", "dB", "nan", "-1", "0", "infdB", "55", "0dB", "-5dB"] {
-            assert!(error(wrong).is_err(), "{wrong}");
+            assert!(parse_error(wrong).is_err(), "{wrong}");
         }
         for wrong in ["", "ms", "-1ms", "nan", "1e30s", "16min"] {
-            assert!(time(wrong).is_err(), "{wrong}");
+            assert!(parse_time(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -109,7 +109,7 @@ enum CliCommand {
 pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
     match run_words(words.into_iter().collect()) {
         CliAction::Done(code) => CliAction::Done(finish(code)),
-        more => more,
+        action => action,
     }
 }
 
@@ -123,13 +123,13 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             return done(Err(CliError::usage(sentence)));
         }
         let commands = CliArgs::command();
-        let there: Vec<&str> = commands
+        let command_names: Vec<&str> = commands
             .get_subcommands()
             .map(clap::Command::get_name)
             .collect();
-        let there = there.join(", ");
+        let command_names = command_names.join(", ");
         return done(Err(CliError::usage(format!(
-            "there is no command {name:?}; the commands are {there}, and `glint SCENE` opens the editor"
+            "there is no command {name:?}; the commands are {command_names}, and `glint SCENE` opens the editor"
         ))));
     }
     let words = match CliArgs::try_parse_from(words) {
@@ -178,7 +178,7 @@ impl CliArgs {
         // A bad file name is reported before the window opens.
         picture_format(self.screenshot.as_deref())?;
         if self.screenshot.is_some() {
-            self.check_shown()?;
+            self.check_selection()?;
         }
         Ok(CliAction::Editor {
             scene: self.scene,
@@ -190,7 +190,7 @@ impl CliArgs {
 
     /// Checks that the scene for a screenshot is valid and has the objects to be selected: nobody would read an error
     /// in the window.
-    fn check_shown(&self) -> Result<(), CliError> {
+    fn check_selection(&self) -> Result<(), CliError> {
         let shown = self.scene.as_deref().map(Document::load).transpose()?;
         let shown = shown.map_or_else(Scene::demo, |shown| shown.scene);
         let lights = shown.lights.iter().map(|light| &light.name);
@@ -208,8 +208,8 @@ impl CliArgs {
 
 /// Returns whether text may be coloured, by the environment variables that turn colours off (<https://no-color.org>).
 fn has_colors() -> bool {
-    let set = |name| std::env::var_os(name).unwrap_or_default();
-    set("NO_COLOR").is_empty() && set("TERM") != "dumb"
+    let variable = |name| std::env::var_os(name).unwrap_or_default();
+    variable("NO_COLOR").is_empty() && variable("TERM") != "dumb"
 }
 
 /// Returns the first argument if it was probably meant as a command that does not exist: it is followed by another
@@ -221,9 +221,10 @@ fn unknown_command(words: &[OsString]) -> Option<String> {
     };
     let is_command = CliArgs::command().find_subcommand(first).is_some() || first == "help";
     let is_word = |path: &Path| path.components().count() == 1 && path.extension().is_none();
-    let is_meant = others.first().is_some_and(is_plain)
+    let looks_like_command = others.first().is_some_and(is_plain)
         || (is_word(Path::new(first)) && !Path::new(first).exists());
-    (is_plain(first) && is_meant && !is_command).then(|| first.to_string_lossy().into_owned())
+    (is_plain(first) && looks_like_command && !is_command)
+        .then(|| first.to_string_lossy().into_owned())
 }
 
 #[cfg(test)]

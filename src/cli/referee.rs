@@ -16,7 +16,7 @@ use crate::trace::RenderControl;
 use crate::words::counted;
 
 /// Factor by which the output picture amplifies differences.
-const ENLARGED: u16 = 64;
+const AMPLIFICATION: u16 = 64;
 
 #[derive(Debug, Args)]
 pub struct RefereeArgs {
@@ -40,8 +40,8 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     picture_format(args.output.as_deref())?;
     let mut scene = read_scene(&args.scene)?;
     let size = &mut scene.render;
-    let own = (size.width, size.height);
-    (size.width, size.height) = args.size.of(own)?;
+    let scene_size = (size.width, size.height);
+    (size.width, size.height) = args.size.of(scene_size)?;
     size.antialias = Sampling::Centres;
     let threads = args.threads.start()?;
     let theirs =
@@ -53,21 +53,21 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     let mut trace = || render_into(&mut ours, &mut planner, &scene, &request, &control);
     let cost = threads.run(|| trace().and_then(|_| trace()));
     let cost = cost.ok_or_else(CliError::no_picture)?;
-    let offs = ours.pixels.iter().zip(&theirs.picture.pixels);
-    let offs: Vec<[u8; 3]> = offs
+    let differences = ours.pixels.iter().zip(&theirs.picture.pixels);
+    let differences: Vec<[u8; 3]> = differences
         .map(|(a, b)| std::array::from_fn(|channel| a[channel].abs_diff(b[channel])))
         .collect();
-    let worst = offs.iter().flatten().max().copied().unwrap_or(0);
-    let same = offs
+    let worst = differences.iter().flatten().max().copied().unwrap_or(0);
+    let same = differences
         .iter()
-        .filter(|off| off.iter().all(|off| *off <= 1))
+        .filter(|difference| difference.iter().all(|difference| *difference <= 1))
         .count();
-    let share = same as f64 * 100.0 / offs.len().max(1) as f64;
+    let share = same as f64 * 100.0 / differences.len().max(1) as f64;
     say(&format!(
         "{share:.3} % of {}×{} pixels are within 1/255 of POV-Ray's, all but {}; the largest difference is {worst}",
         ours.width,
         ours.height,
-        offs.len() - same,
+        differences.len() - same,
     ));
     say(&format!(
         "Glint {:.1} ms, POV-Ray {:.0} ms without reading the scene, {} each",
@@ -81,10 +81,10 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
         }
     }
     if let Some(path) = &args.output {
-        let bright = |off: u8| (u16::from(off) * ENLARGED).min(255) as u8;
-        let pixels = offs
+        let amplified = |difference: u8| (u16::from(difference) * AMPLIFICATION).min(255) as u8;
+        let pixels = differences
             .iter()
-            .map(|&[r, g, b]| [bright(r), bright(g), bright(b), 255]);
+            .map(|&[r, g, b]| [amplified(r), amplified(g), amplified(b), 255]);
         let image = Image {
             pixels: pixels.collect(),
             ..ours

@@ -8,10 +8,10 @@ use std::time::Duration;
 use clap::{Args, ValueEnum, ValueHint};
 use serde::Serialize;
 
-use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole};
-use super::bar::{SHARE, TICK, progress_bar};
+use super::args::{MAX_TIMES, SizeArgs, ThreadsArgs, whole_number};
+use super::bar::{SHARE_TEMPLATE, TICK, progress_bar};
 use super::error::{CliError, say};
-use super::goal::{error, time};
+use super::goal::{parse_error, parse_time};
 use super::scene::{read_scene, read_whole_document};
 use super::settings::SettingArgs;
 use super::target::picture_format;
@@ -40,23 +40,23 @@ pub struct RenderArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Measure samplings on this picture and use the cheapest one whose error is at most this: 55dB, or an RMSE (linear, 0–1); another run may choose a different one
-    #[arg(long, value_name = "ERROR", value_parser = error, conflicts_with_all = ["antialias", "budget", "show"])]
+    #[arg(long, value_name = "ERROR", value_parser = parse_error, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
     /// Measure samplings on this picture and use the most accurate one within this time: 16ms, 2s, or a number of milliseconds; measuring takes extra time
-    #[arg(long, value_name = "TIME", value_parser = time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]
     budget: Option<Duration>,
     /// Instruction set of the tracer; all give the same picture [default: the widest that this processor has]
-    #[arg(long, value_name = "LEVEL", value_parser = lanes, value_hint = ValueHint::Other)]
+    #[arg(long, value_name = "LEVEL", value_parser = parse_lanes, value_hint = ValueHint::Other)]
     lanes: Option<Level>,
     /// Frame of the animation, counted from 1 [default: the scene's own camera and values]
-    #[arg(long, value_name = "N", value_parser = frame, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse_frame, allow_negative_numbers = true)]
     frame: Option<u64>,
-    #[arg(long, value_name = "ASPECT", value_parser = aspect, help = aspect_help(), value_hint = ValueHint::Other)]
+    #[arg(long, value_name = "ASPECT", value_parser = parse_aspect, help = aspect_help(), value_hint = ValueHint::Other)]
     show: Option<Aspect>,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Number of times to trace; the statistics show the median of all runs except the first, which prepares meshes for the others
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1", value_parser = whole_number::<1, MAX_TIMES>, allow_negative_numbers = true)]
     repeat: u32,
     /// Print statistics as one JSON object to stdout
     #[arg(long)]
@@ -92,7 +92,7 @@ struct ChosenSampling {
     is_met: bool,
 }
 
-fn lanes(word: &str) -> Result<Level, String> {
+fn parse_lanes(word: &str) -> Result<Level, String> {
     Level::named(word).ok_or_else(|| {
         let known: Vec<&str> = Level::available()
             .into_iter()
@@ -116,8 +116,8 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     };
     let threads = args.threads.start()?;
     if let Some(frame) = args.frame {
-        let place = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));
-        scene = at_frame(scene, frame).map_err(place)?;
+        let with_path = |sentence| CliError::usage(format!("{}: {sentence}", args.scene.display()));
+        scene = at_frame(scene, frame).map_err(with_path)?;
     }
     args.settings.apply(&mut scene.render);
     scene = args.show.unwrap_or_default().of(&scene);
@@ -151,7 +151,7 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn aspect(word: &str) -> Result<Aspect, String> {
+fn parse_aspect(word: &str) -> Result<Aspect, String> {
     let mut all = Aspect::EACH.into_iter();
     let found = all.find(|(aspect, ..)| aspect.word() == word);
     found
@@ -166,7 +166,7 @@ fn aspect_help() -> String {
     )
 }
 
-fn frame(word: &str) -> Result<u64, String> {
+fn parse_frame(word: &str) -> Result<u64, String> {
     let number = word.parse().ok().filter(|&number| number > 0);
     number.ok_or_else(|| "frames are whole numbers, counted from 1".to_owned())
 }
@@ -196,15 +196,15 @@ impl RenderArgs {
         };
         let (mut planner, control) = (Planner::default(), RenderControl::default());
         let chosen = threads.run(|| choose(scene, request, goal, &mut planner, &control));
-        let stopped = || CliError::failed("measuring ended without a choice");
-        chosen.ok_or_else(stopped).map(Some)
+        let no_choice = || CliError::failed("measuring ended without a choice");
+        chosen.ok_or_else(no_choice).map(Some)
     }
 
     fn request(&self, scene: &Scene) -> Result<RenderRequest, CliError> {
-        let own = (scene.render.width, scene.render.height);
-        let (width, height) = self.size.of(own)?;
+        let scene_size = (scene.render.width, scene.render.height);
+        let (width, height) = self.size.of(scene_size)?;
         Ok(RenderRequest {
-            projection: self.camera.map(|word| match word {
+            projection: self.camera.map(|arg| match arg {
                 CameraArg::Perspective => Projection::Perspective,
                 CameraArg::Orthographic => Projection::Orthographic,
             }),
@@ -222,16 +222,16 @@ fn trace(
     (repeat, output): (u32, Option<&Path>),
     control: &RenderControl,
 ) -> Result<Vec<RenderCost>, CliError> {
-    let stopped = |_| CliError::no_picture();
+    let no_picture = |_| CliError::no_picture();
     let mut costs = Vec::new();
     // All runs use the same prepared meshes, which may be large.
     let mut planner = Planner::default();
-    for left in (0..repeat).rev() {
+    for remaining in (0..repeat).rev() {
         let mut drawing = film.draw(&mut planner, (scene, request), control);
-        drawing.start().map_err(stopped)?;
-        match output.filter(|_| left == 0) {
+        drawing.start().map_err(no_picture)?;
+        match output.filter(|_| remaining == 0) {
             Some(path) => save_picture(path, |format, file| drawing.encode(format, file))?,
-            None => drawing.finish().map_err(stopped)?,
+            None => drawing.finish().map_err(no_picture)?,
         }
         costs.push(drawing.cost());
     }
@@ -253,7 +253,7 @@ fn with_bar<T: Send + 'static>(
         if let Some(done) = result.take_within(TICK) {
             return done.ok();
         }
-        let bar = bar.get_or_insert_with(|| progress_bar(total, SHARE));
+        let bar = bar.get_or_insert_with(|| progress_bar(total, SHARE_TEMPLATE));
         bar.set_position(control.pixels.load(Ordering::Relaxed));
     }
 }
@@ -264,8 +264,8 @@ fn stats(
     threads: usize,
 ) -> Stats {
     // The first run prepares the meshes for all of them.
-    let counted = if costs.len() > 1 { &costs[1..] } else { costs };
-    let mut millis: Vec<f64> = counted
+    let timed = if costs.len() > 1 { &costs[1..] } else { costs };
+    let mut millis: Vec<f64> = timed
         .iter()
         .map(|cost| cost.time.as_secs_f64() * 1e3)
         .collect();

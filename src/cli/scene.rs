@@ -36,9 +36,9 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
 
 /// A message for each object whose mesh could not be read.
 pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
-    let said = |(index, why): (usize, &str)| {
+    let message = |(index, why): (usize, &str)| {
         let name = &scene.objects[index].name;
         format!("{}: {name:?} cannot be shown: {why}", path.display())
     };
-    scene.mesh_problems().map(said).collect()
+    scene.mesh_problems().map(message).collect()
 }

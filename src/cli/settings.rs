@@ -7,13 +7,13 @@ use crate::scene::{Method, Render, Setting, VisitSetting};
 /// The values that were given, by setting; all of them are valid.
 #[derive(Clone, Debug, Default)]
 pub struct SettingArgs {
-    asked: Vec<(&'static str, String)>,
+    given: Vec<(&'static str, String)>,
 }
 
 impl SettingArgs {
     /// Replaces the scene's own values by those that were given.
     pub fn apply(&self, render: &mut Render) {
-        for (name, id) in &self.asked {
+        for (name, id) in &self.given {
             render.choose(name, id);
         }
     }
@@ -24,8 +24,8 @@ struct Flags(Command);
 
 impl VisitSetting for Flags {
     fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
-        let own = "[default: the scene's own]";
-        let help = format!("{}: {} {own}", setting.what, M::syntax());
+        let default_note = "[default: the scene's own]";
+        let help = format!("{}: {} {default_note}", setting.what, M::syntax());
         let lines = M::ALL.iter();
         let lines = lines.map(|method| format!("\n- {}: {}", method.id, method.what));
         let arg = Arg::new(setting.name)
@@ -43,13 +43,13 @@ impl VisitSetting for Flags {
 /// Reads the flags.
 struct FlagReader<'a> {
     matches: &'a mut ArgMatches,
-    asked: Vec<(&'static str, String)>,
+    given: Vec<(&'static str, String)>,
 }
 
 impl VisitSetting for FlagReader<'_> {
     fn visit<M: Method>(&mut self, setting: Setting, _value: &mut M) {
-        let asked = self.matches.remove_one(setting.name);
-        self.asked.extend(asked.map(|id| (setting.name, id)));
+        let given = self.matches.remove_one(setting.name);
+        self.given.extend(given.map(|id| (setting.name, id)));
     }
 }
 
@@ -61,10 +61,10 @@ impl FromArgMatches for SettingArgs {
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, Error> {
         let mut read = FlagReader {
             matches,
-            asked: Vec::new(),
+            given: Vec::new(),
         };
         Render::default().visit_settings(&mut read);
-        Ok(Self { asked: read.asked })
+        Ok(Self { given: read.given })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {

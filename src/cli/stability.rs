@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::action::CliAction;
-use super::args::{MAX_TIMES, whole};
+use super::args::{MAX_TIMES, whole_number};
 use super::error::{CliError, say};
 use super::target::{check_table, picture_format};
 use crate::export::write_text;
@@ -22,7 +22,7 @@ pub struct StabilityArgs {
     png: Option<PathBuf>,
     /// Try this many times more rays in the maps of single rays; maps of pictures use the square root of this factor, or
     /// stay as they are
-    #[arg(long, default_value = "1", value_parser = whole::<1, MAX_TIMES>, allow_negative_numbers = true)]
+    #[arg(long, default_value = "1", value_parser = whole_number::<1, MAX_TIMES>, allow_negative_numbers = true)]
     effort: u32,
 }
 

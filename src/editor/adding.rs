@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::item::{Item, ItemKind};
 use super::names::{
-    Spot, copy_offset, free_light_name, free_object_name, free_pack_name, way_past,
+    Spot, copy_offset, free_light_name, free_object_name, free_pack_name, offset_to_free_place,
 };
 use crate::scene::{
     ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
@@ -22,7 +22,7 @@ const COLORS: [[f64; 3]; 8] = [
     [214.0, 200.0, 184.0],
 ];
 /// The colour of floors.
-const FLOOR: [f64; 3] = [196.0, 192.0, 186.0];
+const FLOOR_COLOR: [f64; 3] = [196.0, 192.0, 186.0];
 /// Radius of the first light's marker, as a share of the diagonal of the objects' bounding box.
 const MARKER_SHARE: f64 = 0.02;
 
@@ -31,7 +31,7 @@ const MARKER_SHARE: f64 = 0.02;
 pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     let name = free_object_name(scene, &format!("{name} 1"));
     let colors = match shape {
-        Shape::Plane(_) => &[FLOOR][..],
+        Shape::Plane(_) => &[FLOOR_COLOR][..],
         _ => &COLORS,
     };
     let color = colors[scene.color_packs.len() % colors.len()];
@@ -63,15 +63,15 @@ pub fn add_light(scene: &mut Scene, position: DVec3) -> Item {
         visible: true,
     };
     // Two lights in one place would look like one.
-    let step = step_of_light(scene, &light);
-    light.position += way_past(scene, &[Spot::light(position)], (step, 0));
+    let step = light_copy_step(scene, &light);
+    light.position += offset_to_free_place(scene, &[Spot::light(position)], (step, 0));
     scene.lights.push(light);
     Item::light(scene.lights.len() - 1)
 }
 
 /// Returns the offset from a light to a copy beside it. Far from the origin, the radius of a marker may be below
 /// rounding precision, hence the lower bound.
-pub fn step_of_light(scene: &Scene, light: &Light) -> DVec3 {
+pub fn light_copy_step(scene: &Scene, light: &Light) -> DVec3 {
     let marker = light.marker.as_ref();
     let radius = marker.map_or_else(|| marker_radius(scene), |marker| marker.radius);
     DVec3::X * (4.0 * radius).max(light.position.x.abs() * 1e-9)
@@ -81,12 +81,12 @@ pub fn step_of_light(scene: &Scene, light: &Light) -> DVec3 {
 /// proportion to the size of the scene.
 pub fn marker_radius(scene: &Scene) -> f64 {
     let mut lights = scene.lights.iter();
-    let like_others = lights.find_map(|light| Some(light.marker.as_ref()?.radius));
-    let of_scene = || {
+    let of_another_light = lights.find_map(|light| Some(light.marker.as_ref()?.radius));
+    let in_proportion = || {
         let (low, high) = scene.objects_bounds()?;
         Some((high - low).length() * MARKER_SHARE).filter(|radius| *radius > 0.0)
     };
-    let radius = like_others.or_else(of_scene);
+    let radius = of_another_light.or_else(in_proportion);
     radius.unwrap_or(LightObj::default().radius)
 }
 
@@ -104,19 +104,19 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
             let original = scene.objects.get(index)?.clone();
             let mut copy = original.clone();
             copy.name = free_object_name(scene, &copy.name);
-            let by = copy_offset(scene, &copy.shape);
-            copy.shape = copy.shape.moved(by);
-            copy_tracks(scene, Owner::Object(&original.name), &copy.name, by);
+            let offset = copy_offset(scene, &copy.shape);
+            copy.shape = copy.shape.moved(offset);
+            copy_tracks(scene, Owner::Object(&original.name), &copy.name, offset);
             scene.objects.insert(index + 1, copy);
         }
         ItemKind::Light => {
             let original = scene.lights.get(index)?.clone();
             let mut copy = original.clone();
             copy.name = free_light_name(scene, &copy.name);
-            let step = step_of_light(scene, &copy);
-            let by = way_past(scene, &[Spot::light(copy.position)], (step, 1));
-            copy.position += by;
-            copy_tracks(scene, Owner::Light(&original.name), &copy.name, by);
+            let step = light_copy_step(scene, &copy);
+            let offset = offset_to_free_place(scene, &[Spot::light(copy.position)], (step, 1));
+            copy.position += offset;
+            copy_tracks(scene, Owner::Light(&original.name), &copy.name, offset);
             scene.lights.insert(index + 1, copy);
         }
         ItemKind::Pack => {
@@ -131,11 +131,13 @@ pub fn duplicate(scene: &mut Scene, item: Item) -> Option<Item> {
     })
 }
 
-/// Copies the animation tracks of a light or object to its copy, which is offset by `by`.
-fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, by: DVec3) {
+/// Copies the animation tracks of a light or object to its copy, which is offset by `offset`.
+fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, offset: DVec3) {
     let tracks = scene.animation.tracks.iter();
-    let own = tracks.filter(|track| track.target.owner() == Some(owner));
-    let copies: Vec<Track> = own.map(|track| track.for_copy(copy, by)).collect();
+    let originals = tracks.filter(|track| track.target.owner() == Some(owner));
+    let copies: Vec<Track> = originals
+        .map(|track| track.for_copy(copy, offset))
+        .collect();
     if !copies.is_empty() {
         scene.animation_mut().tracks.extend(copies);
     }
@@ -146,14 +148,16 @@ pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     let Some(object) = scene.objects.get(index) else {
         return;
     };
-    let Some(place) = scene.color_packs.get_index_of(&object.color_pack) else {
+    let Some(pack_index) = scene.color_packs.get_index_of(&object.color_pack) else {
         return;
     };
-    let is_shared = Item::wearing(scene, &object.color_pack).nth(1).is_some();
+    let is_shared = Item::users_of_pack(scene, &object.color_pack)
+        .nth(1)
+        .is_some();
     if !is_shared {
         return;
     }
-    if let Some(copy) = duplicate(scene, Item::pack(place)) {
+    if let Some(copy) = duplicate(scene, Item::pack(pack_index)) {
         let name = copy.name(scene).unwrap_or_default().to_owned();
         scene.objects[index].color_pack = name;
     }
@@ -172,12 +176,12 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
 /// Returns the name of an unused color pack that is the default one, or a new one in one of these colours. Other
 /// unused ones are left alone: the user may have made them for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
-    let worn = scene.used_packs();
+    let used = scene.used_packs();
     let is_new = |pack: &ColorPack| {
         *pack == ColorPack::default() || colors.iter().any(|color| *pack == new_pack(*color))
     };
     let mut packs = scene.color_packs.iter();
-    let free = packs.find(|(name, pack)| !worn.contains(name.as_str()) && is_new(pack));
+    let free = packs.find(|(name, pack)| !used.contains(name.as_str()) && is_new(pack));
     free.map(|(name, _)| name.clone())
 }
 

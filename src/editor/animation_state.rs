@@ -3,19 +3,19 @@
 use std::sync::Arc;
 
 use super::edit::Replaced;
-use super::timeline::{MEASURED_AT, Timeline, ViewState};
-use crate::animate::{CameraPath, Landmark, Worst, ends_of, pose, shot, worst_off};
+use super::timeline::{REFERENCE_HEIGHT, Timeline, ViewState};
+use crate::animate::{CameraPath, Landmark, WorstDeviation, ends_of, pose, shot, worst_deviation};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
 /// Smallest tolerance of the slider, in pixels.
-const FINEST: f64 = 0.05;
+const MIN_TOLERANCE: f64 = 0.05;
 /// Deviation from the recording, in pixels, beyond which keys must have been moved by hand: nobody chooses a
 /// tolerance that coarse.
-const FARTHEST: f64 = 100.0;
+const HAND_EDITED_DEVIATION: f64 = 100.0;
 /// Most key lists made of recordings that are remembered.
-const MOST_MADE: usize = 16;
+const MAX_REMEMBERED: usize = 16;
 /// Keys looked at from each end of a flight to find out which time span the recording covers.
-const TELLING: usize = 8;
+const KEYS_PROBED: usize = 8;
 
 /// Work that waits for the survey of a take: what its samples see.
 #[derive(Clone, Debug)]
@@ -46,14 +46,14 @@ pub struct AnimationState {
     pub path: CameraPath,
     pub shown: Arc<Scene>,
     /// The time in seconds that `shown` was made for, and whether through the shot camera.
-    made_for: (f64, bool),
+    shown_for: (f64, bool),
     pub revision: u64,
     /// What the samples of a take see. Finding out requires tracing rays, which is done elsewhere.
     pub survey: Option<(Arc<Take>, Vec<Vec<Landmark>>)>,
     /// What to do once the survey arrives.
     pub pending: Option<Pending>,
     /// Key lists made of recordings, each with the tolerance it was made with, in pixels.
-    made: Vec<(f64, Vec<Key<Camera>>)>,
+    simplified_keys: Vec<(f64, Vec<Key<Camera>>)>,
 }
 
 impl AnimationState {
@@ -63,11 +63,11 @@ impl AnimationState {
             scene: Arc::clone(scene),
             path: CameraPath::new(&scene.animation.keys),
             shown: pose(scene, 0.0),
-            made_for: (0.0, false),
+            shown_for: (0.0, false),
             revision: 1,
             survey: None,
             pending: None,
-            made: Vec::new(),
+            simplified_keys: Vec::new(),
         };
         animation_state.measure();
         animation_state
@@ -90,65 +90,74 @@ impl AnimationState {
             self.pending.get_or_insert(Pending::Measure(take));
             return;
         };
-        let flown = self.flown(&animation.keys);
-        let Worst { off, time } = worst_off(&self.path, &take, seen, flown);
-        let off = off * MEASURED_AT;
-        self.timeline.worst = Some(Worst { off, time });
-        let mut made = self.made.iter();
-        let made = made.find(|(_, keys)| *keys == animation.keys);
-        self.timeline.is_edited = made.is_none() && !self.made.is_empty();
-        if let Some((tolerance, _)) = made {
+        let recorded_span = self.recorded_span(&animation.keys);
+        let WorstDeviation { deviation, time } =
+            worst_deviation(&self.path, &take, seen, recorded_span);
+        let deviation = deviation * REFERENCE_HEIGHT;
+        self.timeline.worst = Some(WorstDeviation { deviation, time });
+        let mut simplified = self.simplified_keys.iter();
+        let simplified = simplified.find(|(_, keys)| *keys == animation.keys);
+        self.timeline.is_edited = simplified.is_none() && !self.simplified_keys.is_empty();
+        if let Some((tolerance, _)) = simplified {
             self.timeline.tolerance = *tolerance;
-        } else if off > FARTHEST && self.made.is_empty() {
+        } else if deviation > HAND_EDITED_DEVIATION && self.simplified_keys.is_empty() {
             self.timeline.is_edited = true;
-        } else if off.is_finite() && self.made.is_empty() {
+        } else if deviation.is_finite() && self.simplified_keys.is_empty() {
             // Rounded up to hundredths, as the slider shows it, so that reading the slider back is not taken for a
             // change.
-            self.timeline.tolerance = (off.max(FINEST) * 100.0).ceil() / 100.0;
+            self.timeline.tolerance = (deviation.max(MIN_TOLERANCE) * 100.0).ceil() / 100.0;
             let keys = animation.keys.clone();
-            self.note_made(self.timeline.tolerance, keys);
+            self.remember_simplified(self.timeline.tolerance, keys);
         }
     }
 
     /// Returns the start and end time of the recording within `keys`. Keys left over from those made of the recording
     /// show, by their times, whether the flight was stretched; if no such key is known, the first and the last key
     /// are taken as the ends.
-    pub fn flown(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
-        let made = self.made.iter().rev().map(|(_, made)| made);
-        let mut told = made.filter_map(|made| {
+    pub fn recorded_span(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
+        let simplified = self
+            .simplified_keys
+            .iter()
+            .rev()
+            .map(|(_, simplified)| simplified);
+        let mut spans = simplified.filter_map(|simplified| {
             // A flight that pauses or returns has several equal keys, which tell nothing.
-            let times = |key: &Key<Camera>| {
-                let mut same = made.iter().filter(|other| other.value == key.value);
-                let only = same.next().filter(|_| same.next().is_none())?;
+            let times_if_unique = |key: &Key<Camera>| {
+                let mut equal = simplified.iter().filter(|other| other.value == key.value);
+                let only = equal.next().filter(|_| equal.next().is_none())?;
                 Some((only.time, key.time))
             };
-            let first = keys.iter().take(TELLING).find_map(times)?;
-            let last = keys.iter().rev().take(TELLING).find_map(times)?;
-            let (start, end) = ends_of(made)?;
+            let first = keys.iter().take(KEYS_PROBED).find_map(times_if_unique)?;
+            let last = keys
+                .iter()
+                .rev()
+                .take(KEYS_PROBED)
+                .find_map(times_if_unique)?;
+            let (start, end) = ends_of(simplified)?;
             let scale = (last.1 - first.1) / (last.0 - first.0);
             let at = |time: f64| first.1 + (time - first.0) * scale;
             (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
         });
         let ends = || ends_of(keys).filter(|(first, last)| first < last);
-        told.next().or_else(ends)
+        spans.next().or_else(ends)
     }
 
     /// Notes that `keys` were made of the recording with this tolerance, in pixels.
-    pub fn note_made(&mut self, tolerance: f64, keys: Vec<Key<Camera>>) {
-        self.made.retain(|(_, other)| *other != keys);
-        self.made.push((tolerance, keys));
-        let excess = self.made.len().saturating_sub(MOST_MADE);
-        self.made.drain(..excess);
+    pub fn remember_simplified(&mut self, tolerance: f64, keys: Vec<Key<Camera>>) {
+        self.simplified_keys.retain(|(_, other)| *other != keys);
+        self.simplified_keys.push((tolerance, keys));
+        let excess = self.simplified_keys.len().saturating_sub(MAX_REMEMBERED);
+        self.simplified_keys.drain(..excess);
     }
 
     /// What the samples of `take` see, if its survey has arrived.
     pub fn seen_by(&self, take: &Arc<Take>) -> Option<&[Vec<Landmark>]> {
-        let (of, seen) = self.survey.as_ref()?;
-        Arc::ptr_eq(of, take).then_some(seen.as_slice())
+        let (surveyed, seen) = self.survey.as_ref()?;
+        Arc::ptr_eq(surveyed, take).then_some(seen.as_slice())
     }
 
     /// Returns the state for another document; the playback settings stay.
-    pub fn start_again(&self, scene: &Arc<Scene>) -> Self {
+    pub fn for_new_document(&self, scene: &Arc<Scene>) -> Self {
         let mut new = Self::new(scene);
         new.timeline.repeat = self.timeline.repeat;
         new.timeline.speed = self.timeline.speed;
@@ -157,16 +166,16 @@ impl AnimationState {
     }
 
     /// Switches the picture from the shot camera to the view.
-    pub fn look_at_view(&mut self) {
+    pub fn switch_to_view(&mut self) {
         // Playback goes on if the view was outside the shot camera already: one may fly while it plays.
         self.timeline.is_playing &= !self.timeline.wants_shot;
         self.timeline.wants_shot = false;
         self.timeline.is_flown = true;
     }
 
-    /// On undo or redo of a step that leads to the scene `there`: restores the view from `before` that step.
-    pub fn look_again(&mut self, before: ViewState, there: &Scene) {
-        self.timeline.look_again(before, &self.scene, there);
+    /// On undo or redo of a step that leads to the scene `target`: restores the view from `before` that step.
+    pub fn restore_view(&mut self, before: ViewState, target: &Scene) {
+        self.timeline.restore_view(before, &self.scene, target);
     }
 
     /// Updates the shown scene after a change of the scene, the time or the camera that is looked through.
@@ -174,22 +183,22 @@ impl AnimationState {
         let is_new = !Arc::ptr_eq(scene, &self.scene);
         if is_new {
             let (new, old) = (&scene.animation, &self.scene.animation);
-            let is_flown_otherwise = new.keys != old.keys || new.take != old.take;
+            let is_flight_changed = new.keys != old.keys || new.take != old.take;
             if new.keys != old.keys {
                 self.path = CameraPath::new(&new.keys);
             }
             self.scene = Arc::clone(scene);
-            if is_flown_otherwise {
+            if is_flight_changed {
                 self.measure();
             }
         }
         let animation = &scene.animation;
         let time = self.timeline.shown_time(animation);
         let looks_through = self.timeline.looks_through(animation);
-        if !is_new && self.made_for == (time, looks_through) {
+        if !is_new && self.shown_for == (time, looks_through) {
             return;
         }
-        self.made_for = (time, looks_through);
+        self.shown_for = (time, looks_through);
         let shown = if looks_through {
             shot(scene, &self.path, time)
         } else {
@@ -202,13 +211,13 @@ impl AnimationState {
     }
 
     /// Returns the scene with the objects at these indices in the shape and place that is shown.
-    pub fn posed(&self, scene: &Scene, places: &[usize]) -> Scene {
+    pub fn posed(&self, scene: &Scene, indices: &[usize]) -> Scene {
         let mut posed = scene.clone();
-        for &index in places {
+        for &index in indices {
             let shown = self.shown.objects.get(index);
-            let own = scene.objects.get(index);
-            if let Some((shown, own)) = shown.zip(own)
-                && shown.shape != own.shape
+            let original = scene.objects.get(index);
+            if let Some((shown, original)) = shown.zip(original)
+                && shown.shape != original.shape
                 && let Some(object) = posed.objects.get_mut(index)
             {
                 object.shape.clone_from(&shown.shape);
@@ -241,21 +250,21 @@ impl AnimationState {
         let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
         // Restoring one value may restore others of the same object, so all values are read first.
         let values = |(track, target): (usize, &Target)| {
-            let (own, new) = (in_scene.get(scene, target)?, in_next.get(next, target)?);
-            let is_touched = new != own || replaced.holds(target, in_scene.index(target));
+            let (old, new) = (in_scene.get(scene, target)?, in_next.get(next, target)?);
+            let is_touched = new != old || replaced.holds(target, in_scene.index(target));
             let is_keyed = is_touched && Some(new) != in_shown.get(&self.shown, target);
-            Some((track, own, new, is_keyed))
+            Some((track, old, new, is_keyed))
         };
         let values: Vec<_> = targets.iter().enumerate().filter_map(values).collect();
         let is_any_keyed = values.iter().any(|(.., is_keyed)| *is_keyed);
-        for (track, own, new, is_keyed) in values {
+        for (track, old, new, is_keyed) in values {
             if is_keyed {
                 next.animation_mut().put_value(track, (time, new));
             }
             let target = &targets[track];
-            let places = [&in_scene, &in_shown, &in_next].map(|owners| owners.index(target));
-            if new != own && !restore_shape(target, places, (scene, &self.shown), next) {
-                in_next.set(next, target, own);
+            let indices = [&in_scene, &in_shown, &in_next].map(|owners| owners.index(target));
+            if new != old && !restore_shape(target, indices, (scene, &self.shown), next) {
+                in_next.set(next, target, old);
             }
         }
         is_any_keyed
@@ -263,22 +272,24 @@ impl AnimationState {
 }
 
 /// Restores the object's shape from `scene` in `next`, if its shape there equals the shown one: moving it to the
-/// shown place and back would round its corners. Returns whether it did; `places` holds the object's index in
+/// shown place and back would round its corners. Returns whether it did; `indices` holds the object's index in
 /// `scene`, `shown` and `next`.
 fn restore_shape(
     target: &Target,
-    places: [Option<usize>; 3],
+    indices: [Option<usize>; 3],
     (scene, shown): (&Scene, &Scene),
     next: &mut Scene,
 ) -> bool {
-    let (Target::ObjectPosition(_), [Some(own), Some(there), Some(here)]) = (target, places) else {
+    let (Target::ObjectPosition(_), [Some(scene_index), Some(shown_index), Some(next_index)]) =
+        (target, indices)
+    else {
         return false;
     };
-    if next.objects[here].shape != shown.objects[there].shape {
+    if next.objects[next_index].shape != shown.objects[shown_index].shape {
         return false;
     }
-    if let Some(object) = next.objects.get_mut(here) {
-        object.shape.clone_from(&scene.objects[own].shape);
+    if let Some(object) = next.objects.get_mut(next_index) {
+        object.shape.clone_from(&scene.objects[scene_index].shape);
     }
     true
 }

@@ -21,9 +21,9 @@ pub struct Arrangement {
 impl Arrangement {
     /// Moves objects to the end of the list, into this group.
     pub fn at_end(objects: &List<Object>, moved: &[usize], group: Option<String>) -> Option<Self> {
-        let own: HashSet<&usize> = moved.iter().collect();
-        let order = listed(objects);
-        let anchor = *order.iter().rfind(|place| !own.contains(place))?;
+        let moved_set: HashSet<&usize> = moved.iter().collect();
+        let order = display_order(objects);
+        let anchor = *order.iter().rfind(|index| !moved_set.contains(index))?;
         Some(Self {
             objects: moved.to_vec(),
             anchor,
@@ -38,24 +38,24 @@ impl Arrangement {
         let group = &objects.get(*moved.first()?)?.group;
         let members = objects.iter().filter(|object| object.group == *group);
         // The only member of a group moves as the whole group does.
-        let is_alone = moved.len() > 1 || members.take(2).count() < 2;
-        let own = if is_alone { "" } else { group };
-        let all: HashSet<&usize> = moved.iter().collect();
-        let mut order = listed(objects);
+        let moves_as_group = moved.len() > 1 || members.take(2).count() < 2;
+        let own_group = if moves_as_group { "" } else { group };
+        let moved_set: HashSet<&usize> = moved.iter().collect();
+        let mut order = display_order(objects);
         if is_down {
             order.reverse();
         }
-        let from = order.iter().position(|index| all.contains(index))?;
+        let from = order.iter().position(|index| moved_set.contains(index))?;
         let before = &order[..from];
         let next = *before.last()?;
-        let of_next = &objects[next].group;
-        if !own.is_empty() && own != of_next.as_str() {
+        let next_group = &objects[next].group;
+        if !own_group.is_empty() && own_group != next_group.as_str() {
             return None;
         }
-        let is_past_group = own.is_empty() && !of_next.is_empty();
+        let is_past_group = own_group.is_empty() && !next_group.is_empty();
         let mut passed = before.iter().copied();
         let anchor = passed
-            .find(|&index| index == next || is_past_group && objects[index].group == *of_next)?;
+            .find(|&index| index == next || is_past_group && objects[index].group == *next_group)?;
         Some(Self {
             objects: moved.to_vec(),
             anchor,
@@ -70,17 +70,18 @@ impl Arrangement {
 pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
     let mut members = put_in_order(scene, members);
     if name.is_empty() {
-        for place in &members {
-            scene.objects[*place].group.clear();
+        for index in &members {
+            scene.objects[*index].group.clear();
         }
     } else {
-        let own: HashSet<&usize> = members.iter().collect();
-        let is_other = |place: &usize| !own.contains(place);
-        let is_there = |place: &usize| is_other(place) && scene.objects[*place].group == name;
+        let member_set: HashSet<&usize> = members.iter().collect();
+        let is_outsider = |index: &usize| !member_set.contains(index);
+        let is_existing_member =
+            |index: &usize| is_outsider(index) && scene.objects[*index].group == name;
         let count = scene.objects.len();
-        let last = (0..count).rfind(is_there);
+        let last = (0..count).rfind(is_existing_member);
         let before = last.or_else(|| members.first()?.checked_sub(1));
-        if let Some(anchor) = before.or_else(|| (0..count).find(is_other)) {
+        if let Some(anchor) = before.or_else(|| (0..count).find(is_outsider)) {
             let arranged = arrange(
                 scene,
                 Arrangement {
@@ -92,41 +93,41 @@ pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
             );
             members = arranged.into_iter().map(|item| item.index).collect();
         } else {
-            for place in &members {
-                name.clone_into(&mut scene.objects[*place].group);
+            for index in &members {
+                name.clone_into(&mut scene.objects[*index].group);
             }
         }
     }
-    let places = put_in_order(scene, &members);
-    places.into_iter().map(Item::object).collect()
+    let indices = put_in_order(scene, &members);
+    indices.into_iter().map(Item::object).collect()
 }
 
-/// Sorts all objects into display order; returns the new indices of `some` of them.
-fn put_in_order(scene: &mut Scene, some: &[usize]) -> Vec<usize> {
-    let order = listed(&scene.objects);
+/// Sorts all objects into display order; returns the new indices of those at the indices `tracked`.
+fn put_in_order(scene: &mut Scene, tracked: &[usize]) -> Vec<usize> {
+    let order = display_order(&scene.objects);
     if !order.is_sorted() {
         reorder(scene, &order);
     }
-    let some: HashSet<usize> = some.iter().copied().collect();
-    let places = order.iter().enumerate();
-    let places = places.filter(|(_, before)| some.contains(before));
-    places.map(|(index, _)| index).collect()
+    let tracked: HashSet<usize> = tracked.iter().copied().collect();
+    let positions = order.iter().enumerate();
+    let positions = positions.filter(|(_, old_index)| tracked.contains(old_index));
+    positions.map(|(index, _)| index).collect()
 }
 
 /// Moves objects; returns their items in the new order.
 pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let moved: HashSet<usize> = arrangement.objects.into_iter().collect();
-    let order = listed(&scene.objects);
+    let order = display_order(&scene.objects);
     let (moved, mut order): (Vec<usize>, Vec<usize>) =
         order.into_iter().partition(|index| moved.contains(index));
-    let is_kept_so = order.is_sorted() && moved.is_sorted();
+    let is_in_display_order = order.is_sorted() && moved.is_sorted();
     let anchor = order.iter().position(|index| *index == arrangement.anchor);
     let Some(anchor) = anchor else {
         return Vec::new();
     };
     let at = anchor + usize::from(arrangement.is_after);
-    let places = at..at + moved.len();
-    if is_kept_so {
+    let new_indices = at..at + moved.len();
+    if is_in_display_order {
         // Moved one by one, so that the rest of the list stays shared with earlier undo states.
         let taken = moved.iter().rev().map(|index| scene.objects.remove(*index));
         for object in taken.collect::<Vec<_>>() {
@@ -137,20 +138,20 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         reorder(scene, &order);
     }
     if let Some(group) = arrangement.group {
-        for index in places.clone() {
+        for index in new_indices.clone() {
             scene.objects[index].group.clone_from(&group);
         }
     }
-    places.map(Item::object).collect()
+    new_indices.map(Item::object).collect()
 }
 
 fn reorder(scene: &mut Scene, order: &[usize]) {
-    let objects = order.iter().map(|place| scene.objects[*place].clone());
+    let objects = order.iter().map(|index| scene.objects[*index].clone());
     scene.objects = objects.collect();
 }
 
 /// Indices of the objects in display order.
-fn listed(objects: &List<Object>) -> Vec<usize> {
+fn display_order(objects: &List<Object>) -> Vec<usize> {
     let mut firsts: HashMap<&str, usize> = HashMap::new();
     let keys = objects.iter().enumerate().map(|(index, object)| {
         let first = match object.group.as_str() {

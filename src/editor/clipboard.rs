@@ -7,10 +7,10 @@ use std::ops::Range;
 use glam::DVec3;
 use indexmap::IndexMap;
 
-use super::adding::step_of_light;
+use super::adding::light_copy_step;
 use super::arrange::{Arrangement, arrange};
 use super::item::{Item, ItemKind};
-use super::names::{Spot, step_aside, way_past};
+use super::names::{Spot, offset_to_free_place, shape_copy_step};
 use super::selection::Selection;
 use crate::scene::{
     ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
@@ -18,23 +18,24 @@ use crate::scene::{
 };
 
 /// Least depth (z) of a row of objects, as a share of its length (x), for its copy to be placed in front of it.
-const THINNEST: f64 = 0.05;
+const MIN_ROW_DEPTH_SHARE: f64 = 0.05;
 
 /// Returns a scene of the selected things alone, with the color packs that they use and the tracks that animate them.
 pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
-    let of = |kind| selected.places(kind).into_iter();
-    let objects = of(ItemKind::Object).filter_map(|index| scene.objects.get(index).cloned());
-    let lights = of(ItemKind::Light).filter_map(|index| scene.lights.get(index).cloned());
+    let indices_of = |kind| selected.places(kind).into_iter();
+    let objects =
+        indices_of(ItemKind::Object).filter_map(|index| scene.objects.get(index).cloned());
+    let lights = indices_of(ItemKind::Light).filter_map(|index| scene.lights.get(index).cloned());
     let mut part = Scene {
         objects: objects.collect(),
         lights: lights.collect(),
         ..Scene::empty()
     };
-    let worn = part.used_packs();
-    let chosen: HashSet<usize> = of(ItemKind::Pack).collect();
+    let used = part.used_packs();
+    let chosen: HashSet<usize> = indices_of(ItemKind::Pack).collect();
     let packs = scene.color_packs.iter().enumerate();
     let packs =
-        packs.filter(|(place, (name, _))| worn.contains(name.as_str()) || chosen.contains(place));
+        packs.filter(|(index, (name, _))| used.contains(name.as_str()) || chosen.contains(index));
     let packs: IndexMap<String, ColorPack> = packs
         .map(|(_, (name, pack))| (name.clone(), pack.clone()))
         .collect();
@@ -50,8 +51,8 @@ fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
         scene.animation.tracks.iter().map(|track| &track.target),
     );
     let tracks = scene.animation.tracks.iter();
-    let own = tracks.filter(|track| owners.index(&track.target).is_some());
-    own.cloned().collect()
+    let owned = tracks.filter(|track| owners.index(&track.target).is_some());
+    owned.cloned().collect()
 }
 
 /// Parses a text pasted into a scene: the text of a scene, or of objects, lights or color packs. Color packs that
@@ -106,29 +107,31 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
 /// name. Returns the new lights and objects, or the new color packs if nothing else is pasted.
 pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     let (lights, objects) = (scene.lights.len(), scene.objects.len());
-    let before = scene.color_packs.len();
-    let are_alone = pasted.lights.is_empty() && pasted.objects.is_empty();
-    let packs = paste_packs(scene, pasted, are_alone);
-    if are_alone {
-        return (before..scene.color_packs.len()).map(Item::pack).collect();
+    let first_pack = scene.color_packs.len();
+    let are_only_packs = pasted.lights.is_empty() && pasted.objects.is_empty();
+    let packs = paste_packs(scene, pasted, are_only_packs);
+    if are_only_packs {
+        return (first_pack..scene.color_packs.len())
+            .map(Item::pack)
+            .collect();
     }
-    let known = |name: &mut String| {
+    let to_scene_name = |name: &mut String| {
         if let Some(free) = packs.get(name) {
             name.clone_from(free);
         }
     };
-    let by = way_aside(scene, pasted);
+    let offset = paste_offset(scene, pasted);
     // Names in this scene, by owner in the pasted one.
     let mut names = HashMap::new();
     let mut taken = Names::new(scene.objects.iter().map(|object| &*object.name));
     let groups = new_groups(scene, pasted);
     for object in &pasted.objects {
-        let own = Owner::Object(&object.name);
+        let owner = Owner::Object(&object.name);
         let mut object = object.clone();
-        known(&mut object.color_pack);
+        to_scene_name(&mut object.color_pack);
         object.name = taken.take(&object.name);
-        names.insert(own, object.name.clone());
-        object.shape = object.shape.moved(by);
+        names.insert(owner, object.name.clone());
+        object.shape = object.shape.moved(offset);
         if let Some(group) = groups.get(&object.group) {
             object.group.clone_from(group);
         }
@@ -136,19 +139,19 @@ pub fn paste(scene: &mut Scene, pasted: &Scene) -> Vec<Item> {
     }
     let mut taken = Names::new(scene.lights.iter().map(|light| &*light.name));
     for light in &pasted.lights {
-        let own = Owner::Light(&light.name);
+        let owner = Owner::Light(&light.name);
         let mut light = light.clone();
-        light.position += by;
+        light.position += offset;
         if let Some(marker) = &mut light.marker {
-            known(&mut marker.color_pack);
+            to_scene_name(&mut marker.color_pack);
         }
         light.name = taken.take(&light.name);
-        names.insert(own, light.name.clone());
+        names.insert(owner, light.name.clone());
         scene.lights.push(light);
     }
     let tracks = pasted.animation.tracks.iter().filter_map(|track| {
         let name = names.get(&track.target.owner()?)?;
-        Some(track.for_copy(name, by))
+        Some(track.for_copy(name, offset))
     });
     let tracks: Vec<Track> = tracks.collect();
     if !tracks.is_empty() {
@@ -170,19 +173,21 @@ fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<
     let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
     let mut names = IndexMap::new();
     for (name, pack) in pasted.color_packs.iter() {
-        let is_same = |there: &(&String, &ColorPack)| {
-            there.1 == pack && without_number(there.0) == without_number(name)
+        let is_same = |existing: &(&String, &ColorPack)| {
+            existing.1 == pack && without_number(existing.0) == without_number(name)
         };
-        let own = scene.color_packs.get_key_value(name);
-        let own = own.filter(|(_, there)| *there == pack);
-        let there = own.or_else(|| scene.color_packs.iter().find(is_same));
-        let there = there.filter(|_| !are_copies).map(|(name, _)| name.clone());
-        let here = there.unwrap_or_else(|| {
+        let same_name = scene.color_packs.get_key_value(name);
+        let same_name = same_name.filter(|(_, existing)| *existing == pack);
+        let existing = same_name.or_else(|| scene.color_packs.iter().find(is_same));
+        let existing = existing
+            .filter(|_| !are_copies)
+            .map(|(name, _)| name.clone());
+        let name_in_scene = existing.unwrap_or_else(|| {
             let free = taken.take(name);
             scene.packs_mut().insert(free.clone(), pack.clone());
             free
         });
-        names.insert(name.clone(), here);
+        names.insert(name.clone(), name_in_scene);
     }
     names
 }
@@ -194,16 +199,16 @@ fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<
     let names = pasted.objects.iter().map(|object| &*object.name);
     let names: HashSet<&str> = names.collect();
     let group = |index: usize| scene.objects[index].group.as_str();
-    let own = group(new.clone().next()?);
-    let last_in =
+    let own_group = group(new.clone().next()?);
+    let last_of_group =
         |name: &str| (0..new.start).rfind(|index| !name.is_empty() && group(*index) == name);
     let original = (0..new.start).rfind(|index| names.contains(&*scene.objects[*index].name));
-    let beside = original.or_else(|| last_in(own))?;
-    let is_of_group = new.clone().all(|index| group(index) == group(beside));
-    let around = last_in(group(beside)).filter(|_| !is_of_group);
+    let neighbor = original.or_else(|| last_of_group(own_group))?;
+    let is_of_group = new.clone().all(|index| group(index) == group(neighbor));
+    let group_end = last_of_group(group(neighbor)).filter(|_| !is_of_group);
     Some(Arrangement {
         objects: new.collect(),
-        anchor: around.unwrap_or(beside),
+        anchor: group_end.unwrap_or(neighbor),
         is_after: true,
         group: None,
     })
@@ -213,15 +218,16 @@ fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<
 /// or another group of the same name. A part of a group joins that group, and so does a single object in any case: it
 /// may have been cut from there.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
-    let there = members(scene);
-    let mut taken = Names::new(there.keys().copied());
+    let scene_groups = members(scene);
+    let mut taken = Names::new(scene_groups.keys().copied());
     let mut new = HashMap::new();
-    for (group, own) in members(pasted) {
-        let Some(others) = there.get(group) else {
+    for (group, pasted_members) in members(pasted) {
+        let Some(scene_members) = scene_groups.get(group) else {
             continue;
         };
-        let is_part = own.is_subset(others) && own.len() < others.len();
-        if own.len() > 1 && !is_part {
+        let is_part =
+            pasted_members.is_subset(scene_members) && pasted_members.len() < scene_members.len();
+        if pasted_members.len() > 1 && !is_part {
             new.insert(group.to_owned(), taken.take(group));
         }
     }
@@ -246,26 +252,28 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
 
 /// Returns the offset from the originals to a free place: two things in one place would shadow each other. All pasted
 /// things are offset alike.
-fn way_aside(scene: &Scene, pasted: &Scene) -> DVec3 {
+fn paste_offset(scene: &Scene, pasted: &Scene) -> DVec3 {
     let step = match (pasted.objects.first(), pasted.objects_bounds()) {
         (None, _) => {
             let first = pasted.lights.first();
-            first.map_or(DVec3::ZERO, |light| step_of_light(scene, light))
+            first.map_or(DVec3::ZERO, |light| light_copy_step(scene, light))
         }
         // The copy of a row goes in front of it: at its end it might be outside the picture.
         (_, Some((low, high))) => {
             let size = high - low;
-            let is_row = pasted.objects.len() > 1 && size.x * THINNEST < size.z && size.z < size.x;
+            let is_row = pasted.objects.len() > 1
+                && size.x * MIN_ROW_DEPTH_SHARE < size.z
+                && size.z < size.x;
             if is_row {
                 DVec3::Z * size.z
             } else {
                 DVec3::X * size.max_element()
             }
         }
-        (Some(first), None) => step_aside(scene, &first.shape),
+        (Some(first), None) => shape_copy_step(scene, &first.shape),
     };
     let new: Vec<Spot> = Spot::all_of(pasted).collect();
-    way_past(scene, &new, (step, 0))
+    offset_to_free_place(scene, &new, (step, 0))
 }
 
 #[cfg(test)]
@@ -330,9 +338,9 @@ mod tests {
             }
             let selected = Selection::all([0, 1].map(Item::object));
             let part = excerpt(&scene, &selected);
-            let by = way_aside(&scene, &part);
-            assert_eq!(by.z > 0.0, along_z, "{by}");
-            assert_eq!(by.x > 0.0, !along_z, "{by}");
+            let offset = paste_offset(&scene, &part);
+            assert_eq!(offset.z > 0.0, along_z, "{offset}");
+            assert_eq!(offset.x > 0.0, !along_z, "{offset}");
         }
     }
 

@@ -35,7 +35,7 @@ pub struct Editor {
     pub(super) stamp: Option<Stamp>,
     documents: u64,
     /// Revision at which the last message about a step was shown.
-    pub(super) told_of: u64,
+    pub(super) step_message_revision: u64,
     pub(super) is_dirty: bool,
     /// State of the document's file, as last observed.
     pub(super) own_file: OwnFile,
@@ -77,7 +77,7 @@ impl Editor {
             name: "untitled",
             stamp: None,
             documents: 0,
-            told_of: 0,
+            step_message_revision: 0,
             is_dirty: false,
             own_file: OwnFile::Whole,
             reread: Vec::new(),
@@ -226,7 +226,7 @@ impl Editor {
                 }
             }
             Action::Undo => {
-                self.forget_step();
+                self.dismiss_step_message();
                 self.travel(History::undo);
             }
             Action::Redo => self.travel(History::redo),
@@ -261,7 +261,7 @@ impl Editor {
 
     /// Starts a document from an example.
     pub fn start_example(&mut self, example: &Example) {
-        self.become_other(Self {
+        self.replace_with(Self {
             name: example.name,
             ..Self::new(example.document(), None)
         });
@@ -336,15 +336,15 @@ impl Editor {
     }
 
     pub(super) fn replace(&mut self, document: Document, path: Option<PathBuf>) {
-        self.become_other(Self::new(document, path));
+        self.replace_with(Self::new(document, path));
     }
 
     /// Replaces the document with another one; revisions go on and messages stay.
-    fn become_other(&mut self, other: Self) {
+    fn replace_with(&mut self, other: Self) {
         let revision = self.revision + 1;
         let documents = self.documents + 1;
         let messages = std::mem::take(&mut self.messages);
-        let animation_state = self.animation_state.start_again(&other.scene);
+        let animation_state = self.animation_state.for_new_document(&other.scene);
         *self = Self {
             revision,
             documents,
@@ -352,17 +352,17 @@ impl Editor {
             messages,
             ..other
         };
-        self.tell_missing_meshes();
+        self.report_missing_meshes();
     }
 
     /// Makes an edit; returns false if it was refused. An edit that changes nothing counts as made.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
-        let (label, before) = (edit.label(&self.scene), self.here());
+        let (label, before) = (edit.label(&self.scene), self.snapshot());
         let is_camera = edit.moves_view();
         // Joining or splitting moves the tracks of the objects along, so no keys are set for them.
         let joined = edit.joined().to_vec();
         let replaced = edit.replaced();
-        let is_less = !joined.is_empty() || matches!(edit, Edit::Delete(_));
+        let removes = !joined.is_empty() || matches!(edit, Edit::Delete(_));
         let posed = self.animation_state.posed(&self.scene, &joined);
         let mut next = posed.clone();
         let new = match edit.apply(&mut next) {
@@ -377,16 +377,16 @@ impl Editor {
             return self.refuse(format!("{label}: {}", problem.sentence));
         }
         if is_camera {
-            self.animation_state.look_at_view();
+            self.animation_state.switch_to_view();
         }
         if next == posed {
             return true;
         }
-        self.forget_refusal();
+        self.dismiss_refusal();
         if is_keyed {
             self.animation_state.pause(&next.animation);
         }
-        let lost = is_less.then(|| self.lost(&label, &joined, &next)).flatten();
+        let lost = removes.then(|| self.lost(&label, &joined, &next)).flatten();
         self.history.record(label, before, &next);
         self.selection = if new.is_empty() {
             self.followed(&next)
@@ -401,24 +401,24 @@ impl Editor {
     }
 
     fn travel(&mut self, step: fn(&mut History, Snapshot) -> Option<Snapshot>) {
-        let here = self.here();
-        if let Some(there) = step(&mut self.history, here) {
-            self.return_to(there);
+        let current = self.snapshot();
+        if let Some(target) = step(&mut self.history, current) {
+            self.return_to(target);
         }
     }
 
-    pub(super) fn here(&self) -> Snapshot {
+    pub(super) fn snapshot(&self) -> Snapshot {
         Snapshot {
             scene: Arc::clone(&self.scene),
             selection: self.selection.clone(),
-            look: self.timeline().look(),
+            view: self.timeline().view_state(),
         }
     }
 
-    fn return_to(&mut self, there: Snapshot) {
-        self.animation_state.look_again(there.look, &there.scene);
-        self.selection = there.selection;
-        self.set_scene(self.refreshed(&there.scene));
+    fn return_to(&mut self, state: Snapshot) {
+        self.animation_state.restore_view(state.view, &state.scene);
+        self.selection = state.selection;
+        self.set_scene(self.refreshed(&state.scene));
     }
 
     /// The selection, with its items at their indices in the next scene.

@@ -116,14 +116,14 @@ impl Replaced {
         }
     }
 
-    /// Returns whether a target is overwritten that belongs to the light or object at index `place`.
-    pub fn holds(&self, target: &Target, place: Option<usize>) -> bool {
+    /// Returns whether a target is overwritten that belongs to the light or object at index `index`.
+    pub fn holds(&self, target: &Target, index: Option<usize>) -> bool {
         let owners = match target {
             Target::AmbientIntensity => return self.ambient,
             Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
             Target::ObjectPosition(_) | Target::ObjectRotation(_) => &self.objects,
         };
-        place.is_some_and(|place| owners.contains(&place))
+        index.is_some_and(|index| owners.contains(&index))
     }
 }
 
@@ -215,7 +215,7 @@ impl Edit {
             Self::AddObject(name, _) => format!("Add {name}"),
             Self::Import(_) => "Import mesh".to_owned(),
             Self::Join(joined) => format!("Join {}", counted(joined.len(), "object")),
-            Self::Paste(_, word) => (*word).to_owned(),
+            Self::Paste(_, label) => (*label).to_owned(),
             Self::Separate(index) => format!("Separate {}", name(Item::object(*index))),
             Self::AddLight(_) => "Add Light".to_owned(),
             Self::AddPack => "Add ColorPack".to_owned(),
@@ -260,8 +260,8 @@ impl Edit {
             Self::Object(index, object, _) => replace(&mut scene.objects, index, *object),
             Self::Light(index, light, _) => replace(&mut scene.lights, index, light),
             Self::Pack(index, pack, _) => {
-                if let Some((_, place)) = scene.packs_mut().get_index_mut(index) {
-                    *place = pack;
+                if let Some((_, slot)) = scene.packs_mut().get_index_mut(index) {
+                    *slot = pack;
                 }
             }
             Self::AddObject(name, shape) => return Ok(vec![add_object(scene, name, shape)]),
@@ -296,8 +296,8 @@ impl Edit {
 }
 
 fn replace<T: Clone>(list: &mut List<T>, index: usize, value: T) {
-    if let Some(place) = list.get_mut(index) {
-        *place = value;
+    if let Some(slot) = list.get_mut(index) {
+        *slot = value;
     }
 }
 
@@ -328,12 +328,12 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
     if packs.is_empty() {
         return Ok(());
     }
-    let worn = scene.used_packs();
+    let used = scene.used_packs();
     let names = packs
         .iter()
         .map(|&index| scene.color_packs.get_index(index));
-    if let Some((name, _)) = names.flatten().find(|(name, _)| worn.contains(&***name)) {
-        let users = Item::wearing(scene, name);
+    if let Some((name, _)) = names.flatten().find(|(name, _)| used.contains(&***name)) {
+        let users = Item::users_of_pack(scene, name);
         let users = users.filter_map(|user| user.name(scene)).map(str::to_owned);
         return Err(EditError::PackInUse {
             name: name.clone(),
@@ -398,8 +398,8 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
         return items;
     };
     let count = kind.count(scene);
-    let is_there = |item: &&Item| item.kind == kind && item.index < count;
-    let moved = items.iter().filter(is_there).map(|item| item.index);
+    let exists = |item: &&Item| item.kind == kind && item.index < count;
+    let moved = items.iter().filter(exists).map(|item| item.index);
     let moved: BTreeSet<usize> = moved.collect();
     let to = to.min(count - moved.len());
     match kind {
@@ -414,20 +414,20 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
             }
         }
     }
-    let places: Vec<usize> = moved.into_iter().collect();
-    let now = |item: &Item| {
-        let place = places.binary_search(&item.index).ok()?;
+    let old_indices: Vec<usize> = moved.into_iter().collect();
+    let moved_item = |item: &Item| {
+        let rank = old_indices.binary_search(&item.index).ok()?;
         Some(Item {
             kind,
-            index: to + place,
+            index: to + rank,
         })
     };
-    items.iter().filter(is_there).filter_map(now).collect()
+    items.iter().filter(exists).filter_map(moved_item).collect()
 }
 
 /// Takes out the items at these indices and inserts them again before the one that is at index `to` by then.
-fn move_within<T: Clone>(list: &mut List<T>, places: &BTreeSet<usize>, to: usize) {
-    let taken = places.iter().rev().map(|place| list.remove(*place));
+fn move_within<T: Clone>(list: &mut List<T>, indices: &BTreeSet<usize>, to: usize) {
+    let taken = indices.iter().rev().map(|index| list.remove(*index));
     for item in taken.collect::<Vec<_>>() {
         list.insert(to, item);
     }

@@ -6,18 +6,18 @@ use super::action::Mode;
 use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
-use super::timeline::{MEASURED_AT, Recording, Time};
-use crate::animate::{Landmark, Worst, resampled, simplify};
+use super::timeline::{REFERENCE_HEIGHT, Recording, Time};
+use crate::animate::{Landmark, WorstDeviation, resampled, simplify};
 use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
 use crate::words::counted;
 
 /// Most keys that a recording should become: a base number, and more per second. About as many as can be edited by
 /// hand.
-const FEW: (f64, f64) = (8.0, 2.5);
+const MAX_KEYS_WANTED: (f64, f64) = (8.0, 2.5);
 /// Largest tolerance that is tried, in pixels: a larger deviation would be visible.
-const COARSEST: f64 = 6.0;
+const MAX_TOLERANCE: f64 = 6.0;
 /// The user is told of steps of the mouse if more than one in this many samples was interpolated.
-const MOSTLY: usize = 5;
+const STEPPED_SHARE: usize = 5;
 
 impl Editor {
     pub(super) fn apply_time(&mut self, time: Time) {
@@ -153,7 +153,7 @@ impl Editor {
 
     fn finish_pending(&mut self, pending: Pending) {
         match pending {
-            Pending::Keep(take) => self.keep(take),
+            Pending::Keep(take) => self.store_recording(take),
             Pending::Simplify(take, pixels) => {
                 let animation = &self.scene.animation;
                 // An edit in the meantime may have replaced the take.
@@ -166,9 +166,10 @@ impl Editor {
                 }
                 self.animation_state.timeline.tolerance = pixels;
                 let old = Arc::clone(&self.scene);
-                let flown = self.animation_state.flown(&old.animation.keys);
-                let keys = in_the_time_of(flown, self.simplified(&take));
-                self.animation_state.note_made(pixels, keys.clone());
+                let recorded_span = self.animation_state.recorded_span(&old.animation.keys);
+                let keys = fit_to_span(recorded_span, self.simplified(&take));
+                self.animation_state
+                    .remember_simplified(pixels, keys.clone());
                 let animation = Animation {
                     keys,
                     ..Animation::clone(&old.animation)
@@ -185,15 +186,15 @@ impl Editor {
             return self.notify("Nothing was recorded".to_owned());
         }
         let first = take.samples[0];
-        let is_there =
+        let is_unmoved =
             |sample: &Sample| Sample(first.0, sample.1, sample.2, sample.3, sample.4) == first;
-        if take.lenses.len() < 2 && take.samples.iter().all(is_there) {
+        if take.lenses.len() < 2 && take.samples.iter().all(is_unmoved) {
             return self.notify("The camera did not move: nothing was recorded".to_owned());
         }
-        let (take, stepped) = resampled(take);
-        if stepped * MOSTLY > take.samples.len() {
+        let (take, interpolated) = resampled(take);
+        if interpolated * STEPPED_SHARE > take.samples.len() {
             self.notify(format!(
-                "The mouse moved in steps: {stepped} of {} samples are interpolated",
+                "The mouse moved in steps: {interpolated} of {} samples are interpolated",
                 take.samples.len()
             ));
         }
@@ -201,32 +202,33 @@ impl Editor {
     }
 
     /// Stores a recorded flight in the scene, with keys made of it.
-    fn keep(&mut self, take: Arc<Take>) {
+    fn store_recording(&mut self, take: Arc<Take>) {
         let count = take.samples.len();
         let seconds = take.samples.last().map_or(0.0, |last| last.0);
-        let few = (FEW.0 + FEW.1 * seconds) as usize;
+        let max_keys = (MAX_KEYS_WANTED.0 + MAX_KEYS_WANTED.1 * seconds) as usize;
         self.animation_state.timeline.tolerance = 1.0;
         let mut keys = self.simplified(&take);
         // A coarser tolerance if needed: a trembling hand would leave a key in every frame.
-        while keys.len() > few && self.animation_state.timeline.tolerance < COARSEST {
+        while keys.len() > max_keys && self.animation_state.timeline.tolerance < MAX_TOLERANCE {
             let coarser = self.animation_state.timeline.tolerance * 1.5;
-            self.animation_state.timeline.tolerance = coarser.min(COARSEST);
+            self.animation_state.timeline.tolerance = coarser.min(MAX_TOLERANCE);
             keys = self.simplified(&take);
         }
-        let said = counted(keys.len(), "key");
+        let key_count = counted(keys.len(), "key");
         let replaced = match self.scene.animation.keys.len() {
             0 => String::new(),
             old => format!(", replacing the previous {old} (undo brings them back)"),
         };
         let timeline = &self.animation_state.timeline;
-        let worst = timeline.worst.map_or(0.0, |worst| worst.off);
+        let worst = timeline.worst.map_or(0.0, |worst| worst.deviation);
         let jumps = match timeline.jumps {
             0 => String::new(),
             1 => "; the view jumped once".to_owned(),
             jumps => format!("; the view jumped {jumps} times"),
         };
         let tolerance = timeline.tolerance;
-        self.animation_state.note_made(tolerance, keys.clone());
+        self.animation_state
+            .remember_simplified(tolerance, keys.clone());
         let animation = Animation {
             keys,
             take: Some(take),
@@ -241,7 +243,7 @@ impl Editor {
         self.animation_state.timeline.stays_outside = false;
         self.show_time();
         self.notify(format!(
-            "{count} samples became {said}{replaced}, never more than {worst:.1} px off at 1024²{jumps}"
+            "{count} samples became {key_count}{replaced}, never more than {worst:.1} px off at 1024²{jumps}"
         ));
     }
 
@@ -249,10 +251,10 @@ impl Editor {
     fn simplified(&mut self, take: &Arc<Take>) -> Vec<Key<Camera>> {
         let state = &mut self.animation_state;
         let seen = state.seen_by(take).unwrap_or_default();
-        let tolerance = state.timeline.tolerance / MEASURED_AT;
+        let tolerance = state.timeline.tolerance / REFERENCE_HEIGHT;
         let simplified = simplify(take, seen, tolerance);
-        state.timeline.worst = Some(Worst {
-            off: simplified.worst.off * MEASURED_AT,
+        state.timeline.worst = Some(WorstDeviation {
+            deviation: simplified.worst.deviation * REFERENCE_HEIGHT,
             ..simplified.worst
         });
         state.timeline.jumps = simplified.jumps;
@@ -260,19 +262,19 @@ impl Editor {
     }
 }
 
-/// Fits new keys into the time span `flown` of a flight, whose length may have been changed.
-fn in_the_time_of(flown: Option<(f64, f64)>, new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
-    let (Some((first, last)), [start, .., end]) = (flown, &new[..]) else {
+/// Fits new keys into the time span `span` of a flight, whose length may have been changed.
+fn fit_to_span(span: Option<(f64, f64)>, new: Vec<Key<Camera>>) -> Vec<Key<Camera>> {
+    let (Some((first, last)), [start, .., end]) = (span, &new[..]) else {
         return new;
     };
     let scale = (last - first) / (end.time - start.time);
     // If the beginning was deleted and the rest moved to the start of the timeline, `first` is negative; the new keys
     // have the beginning again and start at 0.
     let (from, first) = (start.time, first.max(0.0));
-    let at = |time: f64| first + (time - from) * scale;
+    let retimed = |time: f64| first + (time - from) * scale;
     let keys = new.into_iter();
     keys.map(|key| Key {
-        time: at(key.time),
+        time: retimed(key.time),
         ..key
     })
     .collect()

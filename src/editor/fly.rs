@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::scene::{Camera, MAX_COORDINATE, Orientation, Projection};
 
 /// Least height of an orthographic picture, in world units: the limit of zooming in.
-const LEAST_HEIGHT: f64 = 1e-6;
+const MIN_HEIGHT: f64 = 1e-6;
 
 /// A step of a flight: distances in world units, turns in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,7 +82,7 @@ impl Flight {
                 Projection::Perspective => next.position -= basis.z_axis * motion.forward,
                 Projection::Orthographic => {
                     let height = next.orthographic_height * (-motion.zoom).exp();
-                    next.orthographic_height = height.clamp(LEAST_HEIGHT, MAX_COORDINATE);
+                    next.orthographic_height = height.clamp(MIN_HEIGHT, MAX_COORDINATE);
                 }
             }
         }

@@ -8,10 +8,10 @@ use super::timeline::ViewState;
 use crate::scene::Scene;
 
 /// Most steps that can be undone; older ones are dropped.
-const MOST_STEPS: usize = 500;
+const MAX_STEPS: usize = 500;
 /// Most memory, in bytes, that undo steps may take beyond what they share; older ones are dropped, except for the
 /// last step.
-const MOST_BYTES: usize = 128 << 20;
+const MAX_BYTES: usize = 128 << 20;
 
 /// A state that undo or redo can return to.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub struct Snapshot {
     /// What was selected.
     pub selection: Selection,
     /// What was looked at, and at which time.
-    pub look: ViewState,
+    pub view: ViewState,
 }
 
 /// A step that was done or undone.
@@ -29,7 +29,7 @@ pub struct Snapshot {
 struct Step {
     label: String,
     /// The state on the other side of the step: before it if it was done, after it if it was undone.
-    there: Snapshot,
+    other_side: Snapshot,
     /// What was selected after the step, if that was noted.
     selected: Option<Selection>,
     /// Bytes that the two states do not share.
@@ -42,7 +42,7 @@ pub struct History {
     done: VecDeque<Step>,
     undone: Vec<Step>,
     /// The redo steps from before the current gesture, to be restored if that changes nothing.
-    aside: Vec<Step>,
+    undone_before_gesture: Vec<Step>,
     /// Name of the step that further edits of the current gesture are merged into.
     gesture: Option<String>,
 }
@@ -51,24 +51,24 @@ impl History {
     /// Notes that the step `label` led from `before` to `after`. During a gesture, edits of the same name are merged
     /// into one step. Redo stays possible after a mere move of the camera.
     pub fn record(&mut self, label: String, before: Snapshot, after: &Scene) {
-        let is_going_on = self.gesture.as_ref() == Some(&label);
-        if !is_going_on {
-            self.aside = self.undone.clone();
+        let continues_gesture = self.gesture.as_ref() == Some(&label);
+        if !continues_gesture {
+            self.undone_before_gesture = self.undone.clone();
         }
         self.keep_undone(&before.scene, after);
-        if is_going_on {
+        if continues_gesture {
             return;
         }
         self.gesture = Some(label.clone());
         let bytes = before.scene.unshared_bytes(after);
         self.done.push_back(Step {
             label,
-            there: before,
+            other_side: before,
             selected: None,
             bytes,
         });
         let mut bytes: usize = self.done.iter().map(|step| step.bytes).sum();
-        while self.done.len() > MOST_STEPS || (bytes > MOST_BYTES && self.done.len() > 1) {
+        while self.done.len() > MAX_STEPS || (bytes > MAX_BYTES && self.done.len() > 1) {
             let forgotten = self.done.pop_front();
             bytes -= forgotten.map_or(0, |step| step.bytes);
         }
@@ -77,16 +77,16 @@ impl History {
     /// Keeps the redo steps if a change was only one of the camera, and drops them otherwise. The next redo states,
     /// as far as they have the camera of before the change, get the new camera.
     fn keep_undone(&mut self, before: &Scene, after: &Scene) {
-        let looking = |scene: &Scene| Scene {
+        let with_new_camera = |scene: &Scene| Scene {
             camera: after.camera.clone(),
             ..scene.clone()
         };
-        if self.undone.is_empty() || looking(before) != *after {
+        if self.undone.is_empty() || with_new_camera(before) != *after {
             return self.undone.clear();
         }
-        let from_there = |step: &&mut Step| step.there.scene.camera == before.camera;
-        for step in self.undone.iter_mut().rev().take_while(from_there) {
-            step.there.scene = Arc::new(looking(&step.there.scene));
+        let has_old_camera = |step: &&mut Step| step.other_side.scene.camera == before.camera;
+        for step in self.undone.iter_mut().rev().take_while(has_old_camera) {
+            step.other_side.scene = Arc::new(with_new_camera(&step.other_side.scene));
         }
     }
 
@@ -105,24 +105,24 @@ impl History {
     /// Ends the gesture: the next edit is a new step. A gesture that ends `here`, in the scene it began with, leaves
     /// no step.
     pub fn end_gesture(&mut self, here: &Scene) {
-        let aside = std::mem::take(&mut self.aside);
-        let was_any = self.gesture.take().is_some();
-        if was_any
+        let undone = std::mem::take(&mut self.undone_before_gesture);
+        let was_in_gesture = self.gesture.take().is_some();
+        if was_in_gesture
             && self
                 .done
                 .back()
-                .is_some_and(|step| *step.there.scene == *here)
+                .is_some_and(|step| *step.other_side.scene == *here)
         {
             self.done.pop_back();
-            self.undone = aside;
+            self.undone = undone;
         }
     }
 
     /// Drops the current gesture and returns the state before it; `None` if nothing was done in it.
     pub fn cancel_gesture(&mut self) -> Option<Snapshot> {
         self.gesture.take()?;
-        self.undone = std::mem::take(&mut self.aside);
-        self.done.pop_back().map(|step| step.there)
+        self.undone = std::mem::take(&mut self.undone_before_gesture);
+        self.done.pop_back().map(|step| step.other_side)
     }
 
     /// The name of the step that undo would take back.
@@ -141,11 +141,11 @@ impl History {
         let step = self.done.pop_back()?;
         let selection = step.selected.unwrap_or(here.selection);
         self.undone.push(Step {
-            there: Snapshot { selection, ..here },
+            other_side: Snapshot { selection, ..here },
             selected: None,
             ..step
         });
-        Some(step.there)
+        Some(step.other_side)
     }
 
     /// Repeats the step that was undone last, with `here` as the current state; returns the state after that step.
@@ -153,11 +153,11 @@ impl History {
         self.gesture = None;
         let step = self.undone.pop()?;
         self.done.push_back(Step {
-            there: here,
-            selected: Some(step.there.selection.clone()),
+            other_side: here,
+            selected: Some(step.other_side.selection.clone()),
             ..step
         });
-        Some(step.there)
+        Some(step.other_side)
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
         Snapshot {
             scene: Arc::new(scene.clone()),
             selection: Selection::default(),
-            look: ViewState::default(),
+            view: ViewState::default(),
         }
     }
 
@@ -274,9 +274,9 @@ mod tests {
             scene.objects[777].shape = shape;
             history.record(format!("Move {step}"), before, &scene);
         }
-        assert_eq!(history.done.len(), MOST_STEPS);
+        assert_eq!(history.done.len(), MAX_STEPS);
         let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
-        assert!(bytes < 50 << 20, "{bytes} bytes for {MOST_STEPS} steps");
+        assert!(bytes < 50 << 20, "{bytes} bytes for {MAX_STEPS} steps");
         for step in 0..12 {
             history.end_gesture(&scene);
             let before = snapshot(&scene);
@@ -286,6 +286,6 @@ mod tests {
             history.record(format!("Hide {step}"), before, &scene);
         }
         let bytes: usize = history.done.iter().map(|step| step.bytes).sum();
-        assert!(bytes <= MOST_BYTES && history.done.len() < 12, "{bytes}");
+        assert!(bytes <= MAX_BYTES && history.done.len() < 12, "{bytes}");
     }
 }

@@ -65,7 +65,7 @@ impl Item {
     }
 
     /// All lights whose marker uses a color pack, and all objects that use it.
-    pub fn wearing<'a>(scene: &'a Scene, pack: &'a str) -> impl Iterator<Item = Self> + 'a {
+    pub fn users_of_pack<'a>(scene: &'a Scene, pack: &'a str) -> impl Iterator<Item = Self> + 'a {
         let lights = scene.lights.iter().enumerate().filter(move |(_, light)| {
             let marker = light.marker.as_ref();
             marker.is_some_and(|marker| marker.color_pack == pack)

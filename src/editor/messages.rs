@@ -17,7 +17,7 @@ const MESHES: &str = "meshes";
 const BROKEN: &str = "broken meshes";
 
 impl Editor {
-    fn say(&mut self, is_error: bool, about: &'static str, text: String) {
+    fn push_message(&mut self, is_error: bool, about: &'static str, text: String) {
         self.messages.push(Message {
             is_error,
             text,
@@ -27,32 +27,32 @@ impl Editor {
 
     /// Shows the user a message.
     pub fn notify(&mut self, text: String) {
-        self.say(false, "", text);
+        self.push_message(false, "", text);
     }
 
     /// Shows the user a message that replaces earlier ones about the same.
     pub fn notify_about(&mut self, about: &'static str, text: String) {
         self.begin(about);
-        self.say(false, about, text);
+        self.push_message(false, about, text);
     }
 
     /// Shows the user a message about the effects of the last step, which is dismissed when that is undone.
     pub fn notify_of_step(&mut self, text: String) {
-        self.told_of = self.revision();
+        self.step_message_revision = self.revision();
         // It replaces the message about the step before, which undo would not revert first.
         self.notify_about(STEP, text);
     }
 
     /// Dismisses the message about the last step, if there was no other step since: it is being undone.
-    pub(super) fn forget_step(&mut self) {
-        if self.told_of == self.revision() {
+    pub(super) fn dismiss_step_message(&mut self) {
+        if self.step_message_revision == self.revision() {
             self.begin(STEP);
         }
     }
 
     /// Notes that an action starts: earlier messages about it are dismissed.
     pub fn begin(&mut self, about: &'static str) {
-        self.say(false, about, String::new());
+        self.push_message(false, about, String::new());
     }
 
     /// Shows the user an error.
@@ -62,18 +62,18 @@ impl Editor {
 
     /// Shows the user an error of an action, see [`Self::begin`].
     pub fn report_error_in(&mut self, about: &'static str, text: String) {
-        self.say(true, about, text);
+        self.push_message(true, about, text);
     }
 
     /// Removes and returns the last error of an action that has not been shown yet.
     pub fn take_error(&mut self, about: &str) -> Option<String> {
-        let is_it = |message: &Message| message.is_error && message.about == about;
-        let index = self.messages.iter().rposition(is_it)?;
+        let is_match = |message: &Message| message.is_error && message.about == about;
+        let index = self.messages.iter().rposition(is_match)?;
         Some(self.messages.remove(index).text)
     }
 
     /// Reports meshes that could not be read.
-    pub fn tell_missing_meshes(&mut self) {
+    pub fn report_missing_meshes(&mut self) {
         self.begin(MESHES);
         let mut problems = self.scene.mesh_problems();
         let Some((index, why)) = problems.next() else {
@@ -89,25 +89,25 @@ impl Editor {
     }
 
     /// Reports that another program has overwritten a mesh file with something that is no mesh.
-    pub(super) fn tell_broken_mesh(&mut self, why: &str) {
+    pub(super) fn report_broken_mesh(&mut self, why: &str) {
         let text = format!("{why}; the version read before is kept and saved with the scene");
         self.report_error_in(BROKEN, text);
     }
 
     /// Dismisses the message about broken mesh files: one of them can be read again.
-    pub(super) fn forget_broken_meshes(&mut self) {
+    pub(super) fn dismiss_broken_meshes(&mut self) {
         self.begin(BROKEN);
     }
 
     /// Returns a message about what is lost by a step named `label` that deletes things, or joins or splits the
     /// objects `joined`; `None` if nothing is.
     pub(super) fn lost(&self, label: &str, joined: &[usize], next: &Scene) -> Option<String> {
-        let lost: Vec<String> = self
+        let losses: Vec<String> = self
             .lost_keys(next)
             .into_iter()
-            .chain(self.lost_looks(joined))
+            .chain(self.lost_appearance(joined))
             .collect();
-        (!lost.is_empty()).then(|| format!("{label}: {}", lost.join("; ")))
+        (!losses.is_empty()).then(|| format!("{label}: {}", losses.join("; ")))
     }
 
     fn lost_keys(&self, next: &Scene) -> Option<String> {
@@ -122,16 +122,16 @@ impl Editor {
 
     /// Returns clauses about lost appearance: color packs of all joined objects but the first, smoothness, and which
     /// of them were hidden.
-    fn lost_looks(&self, joined: &[usize]) -> Vec<String> {
+    fn lost_appearance(&self, joined: &[usize]) -> Vec<String> {
         let Some((first, others)) = joined.split_first() else {
             return Vec::new();
         };
         let pack = |index: &usize| Some(&self.scene.objects.get(*index)?.color_pack);
-        let own = pack(first).map_or("", String::as_str);
+        let own_pack = pack(first).map_or("", String::as_str);
         let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
-        let packs = packs.into_iter().filter(|pack| *pack != own).cloned();
+        let packs = packs.into_iter().filter(|pack| *pack != own_pack).cloned();
         let packs = listed(packs)
-            .map(|names| format!("all of it uses {own} now, including what used {names}"));
+            .map(|names| format!("all of it uses {own_pack} now, including what used {names}"));
         let flat = others.is_empty().then_some(*first).filter(|&index| {
             let object = self.scene.objects.get(index);
             object.is_some_and(Object::is_smooth)
@@ -150,14 +150,14 @@ impl Editor {
     /// Reports why an edit was refused; returns false for the caller to return.
     pub(super) fn refuse(&mut self, why: String) -> bool {
         // An edit repeated with every step of a drag may be refused with different words each time.
-        self.forget_refusal();
+        self.dismiss_refusal();
         self.is_refused = true;
         self.report_error_in(EDIT, why);
         false
     }
 
     /// Dismisses the reason why the last edit was refused: another one was made.
-    pub(super) fn forget_refusal(&mut self) {
+    pub(super) fn dismiss_refusal(&mut self) {
         if std::mem::take(&mut self.is_refused) {
             self.begin(EDIT);
         }
@@ -172,7 +172,7 @@ pub fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
         Some(_) => " and the recording",
         None => "",
     };
-    let words =
+    let sentence =
         format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
-    (!animation.keys.is_empty()).then_some(words)
+    (!animation.keys.is_empty()).then_some(sentence)
 }

@@ -41,7 +41,7 @@ pub fn free_bookmark_name(bookmarks: &[Bookmark], wanted: &str) -> String {
 /// Returns the offset from a shape to its copy: two things in one place would shadow each other, as would two copies.
 pub fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
     let new = [Spot::of(shape)];
-    way_past(scene, &new, (step_aside(scene, shape), 1))
+    offset_to_free_place(scene, &new, (shape_copy_step(scene, shape), 1))
 }
 
 /// A place taken by a thing: others of its kind in the same place would be hidden by it.
@@ -50,7 +50,7 @@ pub struct Spot {
     /// The kind of the shape; `None` for lights.
     kind: Option<&'static str>,
     /// Its position.
-    pub place: DVec3,
+    pub position: DVec3,
 }
 
 impl Spot {
@@ -58,13 +58,16 @@ impl Spot {
     pub fn of(shape: &Shape) -> Self {
         Self {
             kind: Some(shape.kind()),
-            place: shape.position(),
+            position: shape.position(),
         }
     }
 
-    /// The spot of a light at `place`.
-    pub fn light(place: DVec3) -> Self {
-        Self { kind: None, place }
+    /// The spot of a light at `position`.
+    pub fn light(position: DVec3) -> Self {
+        Self {
+            kind: None,
+            position,
+        }
     }
 
     /// The spots of all objects and lights of a scene.
@@ -75,34 +78,34 @@ impl Spot {
     }
 }
 
-/// Returns an offset of whole steps, at least `least` of them, that takes none of the `new` spots to where something
-/// of its kind is in the scene already; one step if no such place is found.
-pub fn way_past(scene: &Scene, new: &[Spot], (step, least): (DVec3, u32)) -> DVec3 {
+/// Returns an offset of whole steps, at least `min_steps` of them, that takes none of the `new` spots to where
+/// something of its kind is in the scene already; one step if no such place is found.
+pub fn offset_to_free_place(scene: &Scene, new: &[Spot], (step, min_steps): (DVec3, u32)) -> DVec3 {
     // Steps added one by one are rounded differently from their sum.
-    let near = step.length() * 1e-6;
-    let cell = |place: DVec3| {
-        let cell = place / (near * 4.0).max(f64::MIN_POSITIVE);
+    let tolerance = step.length() * 1e-6;
+    let cell = |position: DVec3| {
+        let cell = position / (tolerance * 4.0).max(f64::MIN_POSITIVE);
         cell.floor().to_array().map(|part| part as i64)
     };
-    let there = Spot::all_of(scene).map(|Spot { kind, place }| (kind, cell(place)));
-    let there: HashSet<(Option<&str>, [i64; 3])> = there.collect();
-    let is_taken = |by: DVec3| {
-        new.iter().any(|Spot { kind, place }| {
-            let wanted = *place + by;
-            let ([x0, y0, z0], [x1, y1, z1]) = (cell(wanted - near), cell(wanted + near));
+    let occupied = Spot::all_of(scene).map(|Spot { kind, position }| (kind, cell(position)));
+    let occupied: HashSet<(Option<&str>, [i64; 3])> = occupied.collect();
+    let is_taken = |offset: DVec3| {
+        new.iter().any(|Spot { kind, position }| {
+            let wanted = *position + offset;
+            let ([x0, y0, z0], [x1, y1, z1]) = (cell(wanted - tolerance), cell(wanted + tolerance));
             // At most two cells along each axis.
             let cells = (x0..=x1).flat_map(|x| (y0..=y1).map(move |y| (x, y)));
             let mut cells = cells.flat_map(|(x, y)| (z0..=z1).map(move |z| [x, y, z]));
-            cells.any(|cell| there.contains(&(*kind, cell)))
+            cells.any(|cell| occupied.contains(&(*kind, cell)))
         })
     };
-    let steps = (least..least + MOST_STEPS).map(|count| step * f64::from(count));
-    let mut free = steps.filter(|by| !is_taken(*by));
+    let steps = (min_steps..min_steps + MOST_STEPS).map(|count| step * f64::from(count));
+    let mut free = steps.filter(|offset| !is_taken(*offset));
     free.next().unwrap_or(step)
 }
 
 /// Returns the offset from a shape to a copy beside it.
-pub fn step_aside(scene: &Scene, shape: &Shape) -> DVec3 {
+pub fn shape_copy_step(scene: &Scene, shape: &Shape) -> DVec3 {
     if let Some((low, high)) = shape.bounds() {
         return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
     }

@@ -48,7 +48,7 @@ impl Editor {
 
     /// Replaces the scene with what another program has written, as a step that can be undone.
     pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
-        let before = self.here();
+        let before = self.snapshot();
         let theirs = Arc::new(document.scene);
         self.header = document.header;
         (self.stamp, self.own_file) = (Some(stamp), OwnFile::Whole);
@@ -67,7 +67,7 @@ impl Editor {
             "{} was changed by another program and reloaded; undo brings yours back",
             self.title()
         ));
-        self.tell_missing_meshes();
+        self.report_missing_meshes();
     }
 
     /// Takes mesh files that another program has written into the document: into the current scene and into every
@@ -86,15 +86,16 @@ impl Editor {
                 self.broken.remove(&full);
                 names.push(path.to_owned());
             }
-            let (own, is_good) = (read.reference(), read.problem().is_none());
+            let (reference, is_readable) = (read.reference(), read.problem().is_none());
             // A file that has become unreadable does not replace what was last read from it successfully.
-            let is_replaced =
-                |old: &MeshSource| old.reference() == own && (is_good || old.problem().is_some());
+            let is_replaced = |old: &MeshSource| {
+                old.reference() == reference && (is_readable || old.problem().is_some())
+            };
             self.reread.retain(|old| !is_replaced(old));
             self.reread.push(read);
         }
         if self.broken.len() < before {
-            self.forget_broken_meshes();
+            self.dismiss_broken_meshes();
         }
         let scene = self.refreshed(&self.scene);
         if Arc::ptr_eq(&scene, &self.scene) {
@@ -106,15 +107,15 @@ impl Editor {
             self.refreshed(&self.saved)
         };
         self.set_scene(scene);
-        let who = match &names[..] {
+        let subject = match &names[..] {
             [] => String::new(),
             [one] => format!("{one} was"),
             [one, more @ ..] => format!("{one} and {} more were", more.len()),
         };
-        if !who.is_empty() {
-            self.notify(format!("{who} changed by another program and reloaded"));
+        if !subject.is_empty() {
+            self.notify(format!("{subject} changed by another program and reloaded"));
         }
-        self.tell_missing_meshes();
+        self.report_missing_meshes();
     }
 
     /// Whether the document is the only place that still has the content of a file: its own file is gone or
@@ -127,7 +128,7 @@ impl Editor {
         let one = BTreeSet::from([full]);
         if !self.scene.files_in_use(&one).is_empty() {
             self.broken.extend(one);
-            self.tell_broken_mesh(why);
+            self.report_broken_mesh(why);
         }
     }
 
@@ -140,17 +141,17 @@ impl Editor {
         let lost: BTreeSet<&str> = gone.chain(broken).collect();
         let elsewhere = &self.scene.mesh_paths() - &saved.mesh_paths();
         let elsewhere = &elsewhere - &lost;
-        let told = |names: BTreeSet<&str>, why| {
+        let clause = |names: BTreeSet<&str>, why| {
             let names = names.into_iter().collect::<Vec<_>>().join(", ");
-            let words = format!("; the contents of {names} are in the scene file now: {why}");
+            let text = format!("; the contents of {names} are in the scene file now: {why}");
             if names.is_empty() {
                 String::new()
             } else {
-                words
+                text
             }
         };
-        told(lost, "missing, or no longer readable")
-            + &told(elsewhere, "in another folder, and no longer followed")
+        clause(lost, "missing, or no longer readable")
+            + &clause(elsewhere, "in another folder, and no longer followed")
     }
 
     /// Returns a copied part of the scene with the current contents of mesh files.

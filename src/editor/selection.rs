@@ -50,9 +50,9 @@ impl Selection {
             return None;
         };
         let group = group_of(scene, *first)?;
-        let is_in_it = |item: &Item| group_of(scene, *item) == Some(group);
+        let is_member = |item: &Item| group_of(scene, *item) == Some(group);
         let members = scene.objects.iter().filter(|object| object.group == group);
-        let is_whole = self.items().iter().all(is_in_it) && members.count() == self.items().len();
+        let is_whole = self.items().iter().all(is_member) && members.count() == self.items().len();
         is_whole.then_some(group)
     }
 
@@ -71,8 +71,8 @@ impl Selection {
         let open: HashSet<&str> = self.items().iter().filter_map(group).collect();
         let closed = items.iter().filter_map(group);
         let closed: HashSet<&str> = closed.filter(|group| !open.contains(group)).collect();
-        let is_alone = |item: &&Item| group(item).is_none_or(|group| !closed.contains(group));
-        let alone = items.iter().filter(is_alone).copied();
+        let stands_alone = |item: &&Item| group(item).is_none_or(|group| !closed.contains(group));
+        let alone = items.iter().filter(stands_alone).copied();
         if closed.is_empty() {
             return Self::all(alone);
         }
@@ -86,16 +86,16 @@ impl Selection {
     #[must_use]
     pub fn toggled_at(&self, scene: &Scene, item: Item) -> Self {
         let group = group_of(scene, item).map(|group| Self::of_group(scene, group));
-        let is_beside = |group: &Self| {
+        let is_proper_subset = |group: &Self| {
             let count = group.items().len();
             count < self.items().len() && self.has_all(group.items().iter().copied())
         };
-        if let Some(group) = group.filter(is_beside) {
-            let own: HashSet<&Item> = group.items().iter().collect();
+        if let Some(group) = group.filter(is_proper_subset) {
+            let members: HashSet<&Item> = group.items().iter().collect();
             return Self::all(
                 self.items()
                     .iter()
-                    .filter(|item| !own.contains(item))
+                    .filter(|item| !members.contains(item))
                     .copied(),
             );
         }
@@ -110,12 +110,12 @@ impl Selection {
     pub fn is_group(&self, scene: &Scene) -> bool {
         let only = self.item().filter(|item| item.kind == ItemKind::Object);
         let only = only.and_then(|item| scene.objects.get(item.index));
-        let is_alone = |object: &Object| {
+        let is_only_member = |object: &Object| {
             let groups = scene.objects.iter().map(|object| &object.group);
             !object.group.is_empty() && groups.filter(|group| **group == object.group).count() == 1
         };
         match self.items() {
-            [_] => only.is_some_and(is_alone),
+            [_] => only.is_some_and(is_only_member),
             _ => self.group(scene).is_some(),
         }
     }
@@ -123,8 +123,8 @@ impl Selection {
     /// Selects these items, each of them once; the camera if there are none.
     pub fn all(items: impl IntoIterator<Item = Item>) -> Self {
         let mut all = Vec::new();
-        let mut known = HashSet::new();
-        all.extend(items.into_iter().filter(|item| known.insert(*item)));
+        let mut seen = HashSet::new();
+        all.extend(items.into_iter().filter(|item| seen.insert(*item)));
         if all.is_empty() {
             Self::Camera
         } else {
@@ -155,14 +155,14 @@ impl Selection {
 
     /// The selected items of a kind; the item selected last comes last.
     pub fn of_kind(&self, kind: ItemKind) -> Vec<Item> {
-        let own = self.items().iter().filter(|item| item.kind == kind);
-        own.copied().collect()
+        let of_this_kind = self.items().iter().filter(|item| item.kind == kind);
+        of_this_kind.copied().collect()
     }
 
     /// Indices of the selected items of a kind, in ascending order.
     pub fn places(&self, kind: ItemKind) -> Vec<usize> {
-        let own = self.of_kind(kind).into_iter();
-        let mut places: Vec<usize> = own.map(|item| item.index).collect();
+        let of_this_kind = self.of_kind(kind).into_iter();
+        let mut places: Vec<usize> = of_this_kind.map(|item| item.index).collect();
         places.sort_unstable();
         places
     }
@@ -243,10 +243,10 @@ impl Selection {
     /// kept.
     #[must_use]
     pub fn within(self, scene: &Scene) -> Self {
-        let is_there = |item: &Item| item.name(scene).is_some();
+        let exists = |item: &Item| item.name(scene).is_some();
         match self {
-            Self::Items(items) if !items.iter().all(is_there) => {
-                Self::all(items.last().copied().filter(is_there))
+            Self::Items(items) if !items.iter().all(exists) => {
+                Self::all(items.last().copied().filter(exists))
             }
             Self::Keys(mut keys) => {
                 keys.retain(|place| scene.animation.at_place(*place).is_some());
@@ -268,17 +268,17 @@ impl Selection {
         if self.items().iter().all(stays) {
             return self.clone();
         }
-        let mut places: HashMap<(ItemKind, &str), Item> = HashMap::new();
+        let mut items_by_name: HashMap<(ItemKind, &str), Item> = HashMap::new();
         let packs = (0..to.color_packs.len()).map(Item::pack);
         for item in Item::everything(to).chain(packs) {
             if let Some(name) = item.name(to) {
-                places.insert((item.kind, name), item);
+                items_by_name.insert((item.kind, name), item);
             }
         }
         let same_length = |kind: ItemKind| kind.count(from) == kind.count(to);
         let followed = self.items().iter().filter_map(|item| {
             let name = item.name(from)?;
-            let found = places.get(&(item.kind, name)).copied();
+            let found = items_by_name.get(&(item.kind, name)).copied();
             found.or_else(|| same_length(item.kind).then_some(*item))
         });
         Self::all(followed)

@@ -154,7 +154,7 @@ fn a_pack_in_use_stays_and_a_renamed_one_is_followed() {
         "glass".to_owned(),
     )));
     assert_eq!(editor.scene().objects[3].color_pack, "glass");
-    assert_eq!(Item::wearing(editor.scene(), "glass").count(), 6);
+    assert_eq!(Item::users_of_pack(editor.scene(), "glass").count(), 6);
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_unique_pack_leaves_the_others_alone() {
         scene.color_packs["tetrahedron 2"],
         scene.color_packs["tetrahedron"]
     );
-    assert_eq!(Item::wearing(scene, "tetrahedron").count(), 5);
+    assert_eq!(Item::users_of_pack(scene, "tetrahedron").count(), 5);
 }
 
 #[test]

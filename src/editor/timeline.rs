@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::animate::{Landmark, Worst};
+use crate::animate::{Landmark, WorstDeviation};
 use crate::scene::{Animation, Camera, MAX_KEYS, MAX_SECONDS, Orientation, Scene, Take};
 
 /// Height, in pixels, of the picture that deviations are given for.
-pub const MEASURED_AT: f64 = 1024.0;
+pub const REFERENCE_HEIGHT: f64 = 1024.0;
 
 /// What happens at the ends of the timeline.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Timeline {
     /// Most deviation of keys from their take, in pixels of a picture 1024 high.
     pub tolerance: f64,
     /// Where the keys deviate from the recording the most, in the same pixels; `None` without a recording.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstDeviation>,
     /// Number of jumps of the view in the flight that was last made into keys.
     pub jumps: usize,
     /// Whether the keys differ from those made of the recording.
@@ -125,7 +125,7 @@ impl Timeline {
         self.wants_shot && !animation.keys.is_empty()
     }
 
-    pub(super) fn look(&self) -> ViewState {
+    pub(super) fn view_state(&self) -> ViewState {
         ViewState {
             wants_shot: self.wants_shot,
             is_flown: self.is_flown,
@@ -133,18 +133,18 @@ impl Timeline {
         }
     }
 
-    /// On undo or redo of a step that leads from the scene `here` to `there`: restores the view from `before` the
+    /// On undo or redo of a step that leads from the scene `from` to `to`: restores the view from `before` the
     /// step if the step moved the camera, and the playhead if the step changed the length of the flight.
-    pub(super) fn look_again(&mut self, before: ViewState, here: &Scene, there: &Scene) {
-        if here.camera != there.camera {
+    pub(super) fn restore_view(&mut self, before: ViewState, from: &Scene, to: &Scene) {
+        if from.camera != to.camera {
             (self.wants_shot, self.is_flown) = (before.wants_shot, before.is_flown);
         }
-        let [here, there] = [here, there].map(|scene| &scene.animation.keys[..]);
-        let is_same_way =
-            here.len() == there.len() && here.iter().zip(there).all(|(a, b)| a.value == b.value);
+        let [from, to] = [from, to].map(|scene| &scene.animation.keys[..]);
+        let is_same_path =
+            from.len() == to.len() && from.iter().zip(to).all(|(a, b)| a.value == b.value);
         // A step that stretches the flight changes the times of all keys but the first.
-        let mut later = here.iter().zip(there).skip(1);
-        if is_same_way && here.len() > 1 && later.all(|(a, b)| a.time != b.time) {
+        let mut later_pairs = from.iter().zip(to).skip(1);
+        if is_same_path && from.len() > 1 && later_pairs.all(|(a, b)| a.time != b.time) {
             self.playhead = before.playhead;
         }
     }
@@ -218,8 +218,8 @@ impl Timeline {
             }
             Repeat::Loop => {
                 let round = animation.loop_duration();
-                let is_in = self.playhead < round;
-                let start = if is_in { self.playhead } else { 0.0 };
+                let is_within = self.playhead < round;
+                let start = if is_within { self.playhead } else { 0.0 };
                 self.playhead = (start + step).rem_euclid(round);
             }
             Repeat::PingPong => {
@@ -227,18 +227,18 @@ impl Timeline {
                 // shown as long as any other.
                 let frame = 1.0 / animation.frames_per_second;
                 let last = animation.time_of(animation.frame_count());
-                let behind = last + frame;
-                let there = if self.is_returning {
-                    last + behind - self.playhead
+                let end = last + frame;
+                let position = if self.is_returning {
+                    last + end - self.playhead
                 } else {
                     self.playhead
                 };
-                let there = (there + step).rem_euclid((2.0 * last).max(frame));
-                self.is_returning = there >= behind;
+                let position = (position + step).rem_euclid((2.0 * last).max(frame));
+                self.is_returning = position >= end;
                 self.playhead = if self.is_returning {
-                    last + behind - there
+                    last + end - position
                 } else {
-                    there
+                    position
                 };
             }
         }

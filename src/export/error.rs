@@ -73,10 +73,10 @@ pub enum VideoError {
         how: String,
     },
     /// ffmpeg ended with an error.
-    #[error("ffmpeg failed:\n{said}")]
+    #[error("ffmpeg failed:\n{output}")]
     Ffmpeg {
         /// The end of its output.
-        said: String,
+        output: String,
     },
     /// The video format cannot hold such frames.
     #[error("{why}")]
@@ -117,7 +117,7 @@ pub enum VideoError {
 }
 
 /// Most bytes of another program's output that are reported.
-const MOST_SAID: usize = 4000;
+const MAX_OUTPUT_BYTES: usize = 4000;
 
 impl VideoError {
     /// The error for a video that could not be written.
@@ -139,10 +139,10 @@ impl VideoError {
 
 /// Returns the end of another program's output, which tells why it failed. Control characters, which could move a
 /// terminal's cursor, become spaces.
-pub fn last_lines(said: &[u8]) -> String {
-    let end = &said[said.len().saturating_sub(MOST_SAID)..];
-    let said = String::from_utf8_lossy(end);
-    let lines: Vec<String> = said
+pub fn last_lines(output: &[u8]) -> String {
+    let end = &output[output.len().saturating_sub(MAX_OUTPUT_BYTES)..];
+    let output = String::from_utf8_lossy(end);
+    let lines: Vec<String> = output
         .lines()
         .map(|line| line.replace(char::is_control, " "))
         .collect();

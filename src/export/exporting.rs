@@ -9,7 +9,7 @@ use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 use super::error::ExportError;
 use super::fingerprint::fingerprint;
 use super::manifest::{Hash, Manifest};
-use super::save::disk;
+use super::save::disk_error;
 use super::sequence::Sequence;
 use super::writers::{WriteJob, WriteResult, Writers};
 use crate::image::{Film, Format, Image, RenderCost};
@@ -22,10 +22,10 @@ use crate::trace::{RenderControl, Threads};
 const THREADS_PER_FRAME: usize = 8;
 
 /// Most pixels of a frame that is traced as a whole; larger frames are traced strip by strip while they are written.
-const LARGE: u64 = 1 << 24;
+const MAX_WHOLE_PIXELS: u64 = 1 << 24;
 
 /// Most rows of the small picture of a frame.
-const SMALL: u32 = 64;
+const SMALL_ROWS: u32 = 64;
 
 /// Progress of an export.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub enum ExportStep {
 }
 
 /// A frame that is missing or outdated, and what is needed to trace it.
-struct Due {
+struct PendingFrame {
     frame: u64,
     shown: Arc<Scene>,
     fingerprint: Hash,
@@ -69,7 +69,7 @@ struct Due {
 
 /// Traces a small version of a large picture.
 fn small_picture(planner: &mut Planner, shown: &Scene, request: &RenderRequest) -> Option<Image> {
-    let step = request.height.div_ceil(SMALL).max(1);
+    let step = request.height.div_ceil(SMALL_ROWS).max(1);
     let small = RenderRequest {
         width: request.width.div_ceil(step),
         height: request.height.div_ceil(step),
@@ -84,14 +84,14 @@ fn small_picture(planner: &mut Planner, shown: &Scene, request: &RenderRequest) 
 pub struct Exporting {
     sequence: Arc<Sequence>,
     manifest: Manifest,
-    left: VecDeque<u64>,
+    remaining: VecDeque<u64>,
     /// Fingerprints of the frames that were looked at.
-    looked_at: Vec<(u64, Hash)>,
+    checked: Vec<(u64, Hash)>,
     /// Started with the first frame that is to be written.
     writers: Option<Writers>,
     /// Frames given to the writers whose results have not arrived.
-    on_the_way: usize,
-    spare: Vec<Film>,
+    in_flight: usize,
+    spare_films: Vec<Film>,
     planner: Planner,
     is_side_by_side: bool,
     done: Exported,
@@ -115,11 +115,11 @@ impl Exporting {
         sequence.prepare()?;
         Ok(Self {
             manifest: sequence.manifest()?,
-            left: sequence.frames.iter().collect(),
-            looked_at: Vec::new(),
+            remaining: sequence.frames.iter().collect(),
+            checked: Vec::new(),
             writers: None,
-            on_the_way: 0,
-            spare: Vec::new(),
+            in_flight: 0,
+            spare_films: Vec::new(),
             planner: Planner::default(),
             is_side_by_side: false,
             done: Exported {
@@ -163,40 +163,41 @@ impl Exporting {
 
     fn try_step(&mut self, control: &RenderControl) -> Result<ExportStep, ExportError> {
         while let Some(result) = self.writers.as_ref().and_then(Writers::result) {
-            self.take(result)?;
+            self.accept_result(result)?;
         }
-        if self.left.is_empty() {
+        if self.remaining.is_empty() {
             return Ok(ExportStep::Done);
         }
-        let due = self.next_due()?;
+        let pending = self.next_pending()?;
         if self.is_large() {
-            return match due.into_iter().next() {
-                Some(due) => self.draw(due, control),
+            return match pending.into_iter().next() {
+                Some(pending) => self.trace_large(pending, control),
                 None => Ok(ExportStep::Going),
             };
         }
-        let trace = |mut due: Due| {
-            let request = RenderRequest::still(&due.shown);
-            let cost = due
+        let trace = |mut pending: PendingFrame| {
+            let request = RenderRequest::still(&pending.shown);
+            let cost = pending
                 .film
-                .expose(&mut due.planner, &due.shown, &request, control);
-            (due, cost)
+                .expose(&mut pending.planner, &pending.shown, &request, control);
+            (pending, cost)
         };
-        let traced: Vec<(Due, Option<RenderCost>)> = due.into_par_iter().map(trace).collect();
+        let traced: Vec<(PendingFrame, Option<RenderCost>)> =
+            pending.into_par_iter().map(trace).collect();
         let mut stopped = Vec::new();
-        for (due, cost) in traced {
+        for (pending, cost) in traced {
             match cost {
-                Some(cost) => self.write(due, &cost)?,
-                None => stopped.push(due),
+                Some(cost) => self.write(pending, &cost)?,
+                None => stopped.push(pending),
             }
         }
         if stopped.is_empty() {
             return Ok(ExportStep::Going);
         }
-        for due in stopped.into_iter().rev() {
-            self.left.push_front(due.frame);
-            self.spare.push(due.film);
-            self.planner = due.planner;
+        for pending in stopped.into_iter().rev() {
+            self.remaining.push_front(pending.frame);
+            self.spare_films.push(pending.film);
+            self.planner = pending.planner;
         }
         Ok(ExportStep::Stopped)
     }
@@ -204,39 +205,44 @@ impl Exporting {
     /// Whether frames are too large to be kept in memory as a whole.
     fn is_large(&self) -> bool {
         let (width, height) = self.sequence.size();
-        LARGE < u64::from(width) * u64::from(height)
+        MAX_WHOLE_PIXELS < u64::from(width) * u64::from(height)
     }
 
     /// Traces a large frame while it is written.
-    fn draw(&mut self, mut due: Due, control: &RenderControl) -> Result<ExportStep, ExportError> {
+    fn trace_large(
+        &mut self,
+        mut pending: PendingFrame,
+        control: &RenderControl,
+    ) -> Result<ExportStep, ExportError> {
         let sequence = Arc::clone(&self.sequence);
-        let request = RenderRequest::still(&due.shown);
-        let written = sequence.write(due.frame, &due.fingerprint, |file| {
-            let picture = (&*due.shown, &request);
-            let mut drawing = due.film.draw(&mut due.planner, picture, control);
+        let request = RenderRequest::still(&pending.shown);
+        let written = sequence.write(pending.frame, &pending.fingerprint, |file| {
+            let picture = (&*pending.shown, &request);
+            let mut drawing = pending.film.draw(&mut pending.planner, picture, control);
             drawing.encode(sequence.format, file)?;
             Ok(drawing.cost().time)
         });
         let step = match written {
             Ok(()) => {
                 self.done.written += 1;
-                self.last = small_picture(&mut due.planner, &due.shown, &request).map(Arc::new);
+                self.last =
+                    small_picture(&mut pending.planner, &pending.shown, &request).map(Arc::new);
                 ExportStep::Going
             }
             Err(_) if control.is_stopped() => {
-                self.left.push_front(due.frame);
+                self.remaining.push_front(pending.frame);
                 ExportStep::Stopped
             }
             Err(error) => return Err(error),
         };
-        self.planner = due.planner;
-        self.spare.push(due.film);
+        self.planner = pending.planner;
+        self.spare_films.push(pending.film);
         Ok(step)
     }
 
     /// Takes the next frames, as many as are traced side by side, and returns those that have to be traced; the
     /// others are up to date.
-    fn next_due(&mut self) -> Result<Vec<Due>, ExportError> {
+    fn next_pending(&mut self) -> Result<Vec<PendingFrame>, ExportError> {
         // The first frame is traced alone, as the others share what its planner has prepared.
         let is_first = self.last.is_none();
         let wanted = if self.is_side_by_side && !is_first && !self.is_large() {
@@ -245,46 +251,46 @@ impl Exporting {
             1
         };
         let count = self.sequence.at_once(wanted);
-        let mut due: Vec<Due> = Vec::new();
-        for frame in self.left.drain(..count.min(self.left.len())) {
+        let mut pending: Vec<PendingFrame> = Vec::new();
+        for frame in self.remaining.drain(..count.min(self.remaining.len())) {
             let shown = self.sequence.shown(frame);
             let fingerprint = fingerprint(&shown, self.sequence.format)?;
-            self.looked_at.push((frame, fingerprint));
+            self.checked.push((frame, fingerprint));
             let file = self.sequence.file(frame);
             if self.manifest.is_valid(&file, &fingerprint) {
                 self.done.kept += 1;
                 continue;
             }
-            let film = self.spare.pop();
-            due.push(Due {
+            let film = self.spare_films.pop();
+            pending.push(PendingFrame {
                 frame,
                 shown,
                 fingerprint,
                 film: film.unwrap_or_else(|| Film::new(self.sequence.format)),
-                planner: match due.first() {
+                planner: match pending.first() {
                     None => std::mem::take(&mut self.planner),
                     Some(first) => first.planner.clone(),
                 },
             });
         }
-        Ok(due)
+        Ok(pending)
     }
 
     /// Hands a frame to the writers.
-    fn write(&mut self, due: Due, cost: &RenderCost) -> Result<(), ExportError> {
-        self.planner = due.planner;
-        let step = due.film.size().1.div_ceil(SMALL as usize).max(1);
-        self.last = Some(Arc::new(due.film.decimated(step)));
+    fn write(&mut self, pending: PendingFrame, cost: &RenderCost) -> Result<(), ExportError> {
+        self.planner = pending.planner;
+        let step = pending.film.size().1.div_ceil(SMALL_ROWS as usize).max(1);
+        self.last = Some(Arc::new(pending.film.decimated(step)));
         let count = self.sequence.at_once(Threads::current());
         let writers = match self.writers.take() {
             Some(writers) => writers,
             None => Writers::start(&self.sequence, count)?,
         };
-        self.on_the_way += 1;
+        self.in_flight += 1;
         let is_taken = writers.write(WriteJob {
-            frame: due.frame,
-            film: due.film,
-            fingerprint: due.fingerprint,
+            frame: pending.frame,
+            film: pending.film,
+            fingerprint: pending.fingerprint,
             time: cost.time,
         });
         self.writers = Some(writers);
@@ -301,15 +307,15 @@ impl Exporting {
     /// # Errors
     /// [`ExportError`] of a frame that was not written, or was replaced since.
     pub fn finish(&mut self) -> Result<Exported, ExportError> {
-        let mut all = Ok(());
+        let mut outcome = Ok(());
         for result in self.writers.take().into_iter().flat_map(Writers::finish) {
-            let taken = self.take(result);
-            all = all.and(taken);
+            let taken = self.accept_result(result);
+            outcome = outcome.and(taken);
         }
-        all?;
-        if self.on_the_way > 0 {
+        outcome?;
+        if self.in_flight > 0 {
             let fault = io::Error::other("a writer thread stopped because of an internal error");
-            return Err(disk(&self.sequence.folder, fault));
+            return Err(disk_error(&self.sequence.folder, fault));
         }
         if self.done.so_far() == self.done.total {
             self.check_frames()?;
@@ -320,19 +326,19 @@ impl Exporting {
     /// Checks that no other export has replaced frames by its own.
     fn check_frames(&self) -> Result<(), ExportError> {
         let manifest = self.sequence.manifest()?;
-        let is_other = |(frame, fingerprint): &&(u64, Hash)| {
-            manifest.shows_other(&self.sequence.file(*frame), fingerprint)
+        let is_replaced = |(frame, fingerprint): &&(u64, Hash)| {
+            manifest.has_other_fingerprint(&self.sequence.file(*frame), fingerprint)
         };
         let path = |&(frame, _): &(u64, Hash)| self.sequence.path(frame);
-        match self.looked_at.iter().find(is_other).map(path) {
+        match self.checked.iter().find(is_replaced).map(path) {
             Some(path) => Err(ExportError::Changed { path }),
             None => Ok(()),
         }
     }
 
-    fn take(&mut self, result: WriteResult) -> Result<(), ExportError> {
-        self.on_the_way -= 1;
-        self.spare.push(result.film);
+    fn accept_result(&mut self, result: WriteResult) -> Result<(), ExportError> {
+        self.in_flight -= 1;
+        self.spare_films.push(result.film);
         result.written?;
         self.done.written += 1;
         Ok(())

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use super::error::{VideoError, last_lines};
-use super::frame_file::{as_it_is, as_ppm};
-use super::program::end_of;
+use super::frame_file::{as_ppm, frame_bytes};
+use super::program::wait_for_exit;
 use super::sequence::Sequence;
 use crate::files::absolute;
 use crate::image::Format;
@@ -21,7 +21,7 @@ use crate::words::for_shell;
 ///
 /// # Errors
 /// [`VideoError`].
-pub fn by_ffmpeg(
+pub fn make_with_ffmpeg(
     sequence: &Sequence,
     (unfinished, path): (&Path, &Path),
     codec: &str,
@@ -30,21 +30,21 @@ pub fn by_ffmpeg(
     let mut ffmpeg = match start(sequence, unfinished, codec) {
         Ok(ffmpeg) => ffmpeg,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            let how = without_ffmpeg(sequence, path, codec);
+            let how = advice_without_ffmpeg(sequence, path, codec);
             return Err(VideoError::NoFfmpeg { how });
         }
         Err(error) => {
-            let said = format!("it cannot be started: {error}");
-            return Err(VideoError::Ffmpeg { said });
+            let output = format!("it cannot be started: {error}");
+            return Err(VideoError::Ffmpeg { output });
         }
     };
     // Its output is read while it is fed: it would block on a full pipe.
     let stderr = ffmpeg.stderr.take();
     let listener = thread::spawn(move || {
-        let mut said = Vec::new();
+        let mut output = Vec::new();
         // On an error, what was read so far is kept.
-        let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
-        said
+        let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut output));
+        output
     });
     // Frames are fed by a thread of their own: a write to an ffmpeg that takes no more would block, and could not be
     // cancelled.
@@ -55,24 +55,25 @@ pub fn by_ffmpeg(
         move || feed(&sequence, pipe, &fed)
     });
     let is_wanted = || go_on(fed.load(Ordering::Relaxed));
-    let ended = end_of(&mut ffmpeg, is_wanted).map_err(|error| VideoError::disk(path, &error))?;
-    let status = ended.ok_or(VideoError::Stopped)?;
-    let said = listener.join().unwrap_or_default();
-    let has_all = feeder.join().unwrap_or(Ok(false))?;
+    let exit =
+        wait_for_exit(&mut ffmpeg, is_wanted).map_err(|error| VideoError::disk(path, &error))?;
+    let status = exit.ok_or(VideoError::Stopped)?;
+    let output = listener.join().unwrap_or_default();
+    let took_all_frames = feeder.join().unwrap_or(Ok(false))?;
     let is_written = || fs::metadata(unfinished).is_ok_and(|file| file.len() > 0);
     let why = if status.code().is_none() {
         format!("it was killed ({status})\n")
     } else if !status.success() {
         String::new()
-    } else if !has_all {
+    } else if !took_all_frames {
         "it ended before it had received all frames\n".to_owned()
     } else if !is_written() {
         "it wrote nothing\n".to_owned()
     } else {
         return Ok(());
     };
-    let said = format!("{why}{}", last_lines(&said));
-    Err(VideoError::Ffmpeg { said })
+    let output = format!("{why}{}", last_lines(&output));
+    Err(VideoError::Ffmpeg { output })
 }
 
 fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Child> {
@@ -82,9 +83,9 @@ fn start(sequence: &Sequence, unfinished: &Path, codec: &str) -> io::Result<Chil
         Format::Ppm | Format::Exr => "ppm",
     };
     // Without `-xerror`, ffmpeg reports a full disk but exits successfully.
-    let manner = ["-hide_banner", "-loglevel", "error", "-xerror", "-y"];
+    let common_args = ["-hide_banner", "-loglevel", "error", "-xerror", "-y"];
     Command::new("ffmpeg")
-        .args(manner)
+        .args(common_args)
         .args(["-f", "image2pipe", "-c:v", frames, "-framerate", &fps])
         .args(["-i", "-"])
         .args(codec.split(' '))
@@ -108,7 +109,7 @@ fn feed(
         let bytes = match sequence.format {
             // In a pipe, the end of an EXR frame cannot be found.
             Format::Exr => as_ppm(sequence, frame)?,
-            Format::Png | Format::Ppm => as_it_is(sequence, frame)?,
+            Format::Png | Format::Ppm => frame_bytes(sequence, frame)?,
         };
         if pipe.write_all(&bytes).is_err() {
             return Ok(false);
@@ -119,7 +120,7 @@ fn feed(
 }
 
 /// Tells how to make the video once ffmpeg is installed: by a command line if one suffices.
-fn without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
+fn advice_without_ffmpeg(sequence: &Sequence, path: &Path, codec: &str) -> String {
     match command(sequence, path, codec) {
         Some(command) => format!("this command makes the video from them:\n{command}"),
         None => "exporting again makes the video from them once ffmpeg is installed".to_owned(),
@@ -140,8 +141,8 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
     let codec = codec.join(" ");
     let first = sequence.frames.iter().next().unwrap_or(1);
     let count = sequence.frames.count();
-    let in_a_row = first..first + count as u64;
-    if sequence.frames.iter().eq(in_a_row) {
+    let consecutive = first..first + count as u64;
+    if sequence.frames.iter().eq(consecutive) {
         // ffmpeg takes the whole path for a pattern, so each `%` in the folder is escaped.
         let folder = absolute(&sequence.folder).display().to_string();
         let folder = folder.replace('%', "%%");

@@ -15,7 +15,7 @@ use crate::scene::{ColorPack, Packs, Scene};
 /// # Errors
 /// [`ExportError::Unwritable`], for a scene that cannot be serialized.
 pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
-    let text = ron::to_string(&bare(shown))?;
+    let text = ron::to_string(&stripped(shown))?;
     let mut hasher = blake3::Hasher::new();
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     hasher.update(format.ending().as_bytes());
@@ -25,27 +25,27 @@ pub fn fingerprint(shown: &Scene, format: Format) -> Result<Hash, ExportError> {
 
 /// Returns the scene without names and without what no frame shows. Hidden things stay: the number of things in a
 /// scene may determine how it is traced.
-fn bare(shown: &Scene) -> Scene {
-    let mut bare = Scene {
+fn stripped(shown: &Scene) -> Scene {
+    let mut stripped = Scene {
         animation: Arc::default(),
         bookmarks: Vec::new(),
         ..shown.abridged()
     };
-    for object in bare.objects.iter_mut() {
+    for object in stripped.objects.iter_mut() {
         (object.name, object.group) = (String::new(), String::new());
     }
-    for light in bare.lights.iter_mut() {
+    for light in stripped.lights.iter_mut() {
         light.name.clear();
     }
-    number_packs(&mut bare);
-    bare
+    number_packs(&mut stripped);
+    stripped
 }
 
 /// Replaces the names of color packs in use by numbers, and drops unused ones.
 fn number_packs(scene: &mut Scene) {
-    let worn = scene.used_packs();
+    let used = scene.used_packs();
     let packs = scene.color_packs.iter();
-    let packs = packs.filter(|(name, _)| worn.contains(name.as_str()));
+    let packs = packs.filter(|(name, _)| used.contains(name.as_str()));
     let numbers: IndexMap<String, String> = packs
         .clone()
         .zip(0..)

@@ -17,7 +17,7 @@ use crate::trace::Threads;
 ///
 /// # Errors
 /// The first one that occurs, after the frames before it were handed on; [`VideoError::Stopped`].
-pub fn in_order<F: Send, P: Send>(
+pub fn prepare_in_order<F: Send, P: Send>(
     sequence: &Sequence,
     (mut frames, go_on): (
         impl Iterator<Item = (usize, F)>,
@@ -28,12 +28,12 @@ pub fn in_order<F: Send, P: Send>(
 ) -> Result<(), VideoError> {
     let at_once = sequence.at_once(Threads::current());
     loop {
-        let some: Vec<(usize, F)> = frames.by_ref().take(at_once).collect();
-        if some.is_empty() {
+        let batch: Vec<(usize, F)> = frames.by_ref().take(at_once).collect();
+        if batch.is_empty() {
             return Ok(());
         }
         let prepare = |(done, frame)| (done, prepare(frame));
-        let prepared: Vec<_> = some.into_par_iter().map(prepare).collect();
+        let prepared: Vec<_> = batch.into_par_iter().map(prepare).collect();
         for (done, frame) in prepared {
             hand_on(frame?)?;
             if !go_on(done) {
@@ -47,13 +47,15 @@ pub fn in_order<F: Send, P: Send>(
 ///
 /// # Errors
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
-pub fn as_it_is(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
+pub fn frame_bytes(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
-    let wrong = |source| VideoError::unreadable(&path, source);
-    let bytes = fs::read(&path).map_err(|error| wrong(error.into()))?;
+    let unreadable = |source| VideoError::unreadable(&path, source);
+    let bytes = fs::read(&path).map_err(|error| unreadable(error.into()))?;
     let reader = ImageReader::new(Cursor::new(&bytes[..])).with_guessed_format();
     let size = reader.map_err(ImageError::from);
-    let size = size.and_then(ImageReader::into_dimensions).map_err(wrong)?;
+    let size = size
+        .and_then(ImageReader::into_dimensions)
+        .map_err(unreadable)?;
     check_size(sequence, &path, size)?;
     Ok(bytes)
 }
@@ -75,7 +77,7 @@ fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), 
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
 pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
-    let image = Image::from(&read(sequence, frame)?);
+    let image = Image::from(&read_frame(sequence, frame)?);
     let mut bytes = Cursor::new(Vec::new());
     let encoded = image.encode(Format::Ppm, &mut bytes);
     encoded.map_err(|source| VideoError::unreadable(&path, source))?;
@@ -86,7 +88,7 @@ pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
 ///
 /// # Errors
 /// [`VideoError::Frame`], [`VideoError::Replaced`].
-pub fn read(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
+pub fn read_frame(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
     let path = sequence.path(frame);
     let image = decode(&path).map_err(|source| VideoError::unreadable(&path, source))?;
     check_size(sequence, &path, (image.width(), image.height()))?;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Most frames of one set.
-const MOST: u64 = 1_000_000;
+const MAX_FRAMES: u64 = 1_000_000;
 
 /// Frames in ascending order, each once; counted from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,7 +26,9 @@ pub enum FramesError {
         text: String,
     },
     /// There are more frames than can be handled at once.
-    #[error("there can be at most {MOST} frames at once: choose some of them, such as 1-{MOST}")]
+    #[error(
+        "there can be at most {MAX_FRAMES} frames at once: choose some of them, such as 1-{MAX_FRAMES}"
+    )]
     TooMany,
 }
 
@@ -36,7 +38,7 @@ impl Frames {
     /// # Errors
     /// [`FramesError::TooMany`].
     pub fn up_to(last: u64) -> Result<Self, FramesError> {
-        if last > MOST {
+        if last > MAX_FRAMES {
             return Err(FramesError::TooMany);
         }
         Ok(Self((1..=last).collect()))
@@ -64,7 +66,7 @@ impl Frames {
                     text: text.to_owned(),
                 });
             }
-            if ((last - first) / step).saturating_add(frames.len() as u64) >= MOST {
+            if ((last - first) / step).saturating_add(frames.len() as u64) >= MAX_FRAMES {
                 return Err(FramesError::TooMany);
             }
             frames.extend((first..=last).step_by(usize::try_from(step).unwrap_or(usize::MAX)));
@@ -79,25 +81,25 @@ impl Frames {
         self.0.iter().copied()
     }
 
-    /// The frames for which `is_so` is false; there may be none.
+    /// The frames for which `excludes` is false; there may be none.
     ///
     /// # Errors
-    /// The first error of `is_so`.
-    pub fn without<E>(&self, is_so: impl Fn(u64) -> Result<bool, E>) -> Result<Self, E> {
-        let mut others = Vec::new();
+    /// The first error of `excludes`.
+    pub fn without<E>(&self, excludes: impl Fn(u64) -> Result<bool, E>) -> Result<Self, E> {
+        let mut kept = Vec::new();
         for frame in self.iter() {
-            if !is_so(frame)? {
-                others.push(frame);
+            if !excludes(frame)? {
+                kept.push(frame);
             }
         }
-        Ok(Self(others))
+        Ok(Self(kept))
     }
 
     /// Whether the frames are equally far apart.
     pub fn are_even(&self) -> bool {
-        let mut apart = self.0.windows(2).map(|pair| pair[1] - pair[0]);
-        let first = apart.next();
-        apart.all(|step| Some(step) == first)
+        let mut gaps = self.0.windows(2).map(|pair| pair[1] - pair[0]);
+        let first = gaps.next();
+        gaps.all(|step| Some(step) == first)
     }
 
     /// The number of frames.
@@ -114,23 +116,25 @@ impl Frames {
 impl fmt::Display for Frames {
     /// Writes as few ranges as possible; three or more frames that are equally far apart become a range with a step.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut rest = &self.0[..];
+        let mut remaining = &self.0[..];
         let mut comma = "";
-        while let [first, ..] = rest {
-            let step = rest.get(1).map_or(1, |second| second - first);
-            let apart = rest.windows(2).take_while(|pair| pair[1] - pair[0] == step);
-            let mut run = apart.count() + 1;
+        while let [first, ..] = remaining {
+            let step = remaining.get(1).map_or(1, |second| second - first);
+            let equal_gaps = remaining
+                .windows(2)
+                .take_while(|pair| pair[1] - pair[0] == step);
+            let mut run = equal_gaps.count() + 1;
             if step > 1 && run == 2 {
                 run = 1;
             }
-            let last = rest[run - 1];
+            let last = remaining[run - 1];
             match (run, step) {
                 (1, _) => write!(f, "{comma}{first}")?,
                 (_, 1) => write!(f, "{comma}{first}-{last}")?,
                 _ => write!(f, "{comma}{first}-{last}:{step}")?,
             }
             comma = ",";
-            rest = &rest[run..];
+            remaining = &remaining[run..];
         }
         Ok(())
     }

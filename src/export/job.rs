@@ -6,13 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::{check_place, disk, write_text};
+use super::save::{check_place, disk_error, write_text};
 use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
 
 /// Most characters of a job's name: Open Job Description, template schemas 2023-09, `<JobName>`.
-const LONGEST_NAME: usize = 128;
+const MAX_NAME_LENGTH: usize = 128;
 
 /// Frames per task, unless the farm says otherwise.
 const CHUNK: u32 = 10;
@@ -45,7 +45,7 @@ pub enum JobError {
 }
 
 /// Most characters of a value in a template, according to the standard.
-const LONGEST: usize = 1024;
+const MAX_VALUE_LENGTH: usize = 1024;
 
 /// The files that [`write_job`] has written.
 #[derive(Debug)]
@@ -70,18 +70,21 @@ pub fn write_job(
     sequence: &Sequence,
     path: &Path,
 ) -> Result<JobFiles, JobError> {
-    let named = file.unwrap_or(path);
-    let stem = named.file_stem().unwrap_or_default().to_string_lossy();
+    let name_source = file.unwrap_or(path);
+    let stem = name_source
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy();
     let has_files = document.scene.has_mesh_files();
-    let end = if has_files { "-whole" } else { "" };
-    let name = format!("{stem}{end}.ron");
+    let suffix = if has_files { "-whole" } else { "" };
+    let name = format!("{stem}{suffix}.ron");
     let scene = path.with_file_name(&name);
     if path == scene || file.is_some_and(|file| is_same_file(file, path)) {
         let (path, other) = (path.to_owned(), path.with_extension("yaml"));
         return Err(JobError::IsScene { path, other });
     }
     let frames = sequence.frames.to_string();
-    if frames.len() > LONGEST {
+    if frames.len() > MAX_VALUE_LENGTH {
         return Err(JobError::TooManyPieces(frames));
     }
     // Checked first, so that no file is moved to a backup for a template that cannot be written.
@@ -97,8 +100,8 @@ pub fn write_job(
         .into_iter()
         .collect();
     // An older template written by Glint is overwritten without a backup.
-    if read_file(path).is_ok_and(|there| !is_template(&String::from_utf8_lossy(&there))) {
-        let backup = back_up(path).map_err(|source| disk(path, source))?;
+    if read_file(path).is_ok_and(|existing| !is_template(&String::from_utf8_lossy(&existing))) {
+        let backup = back_up(path).map_err(|source| disk_error(path, source))?;
         replaced.push((path.to_owned(), backup));
     }
     write_text(path, &job_template(sequence, &stem, &name))?;
@@ -116,20 +119,20 @@ fn write_scene(
     file: Option<&Path>,
     path: &Path,
 ) -> Result<Option<PathBuf>, JobError> {
-    let disk = |source| disk(path, source);
+    let disk_error = |source| disk_error(path, source);
     // Regular files only: a pipe can be read only once.
     let text = if let Some(file) = file.filter(|file| file.is_file()) {
-        fs::read(file).map_err(disk)?
+        fs::read(file).map_err(disk_error)?
     } else {
         let (header, scene) = (document.header.clone(), document.scene.inlined());
         let text = Document { header, scene }.to_text()?;
         Document::check_length(path, &text)?;
         text.into_bytes()
     };
-    let is_other = read_file(path).is_ok_and(|there| there != text);
-    let backup = is_other.then(|| back_up(path)).transpose();
-    let backup = backup.map_err(disk)?;
-    write_atomic(path, &text).map_err(disk)?;
+    let differs = read_file(path).is_ok_and(|existing| existing != text);
+    let backup = differs.then(|| back_up(path)).transpose();
+    let backup = backup.map_err(disk_error)?;
+    write_atomic(path, &text).map_err(disk_error)?;
     Ok(backup)
 }
 
@@ -138,7 +141,7 @@ fn write_scene(
 fn job_name(scene: &str) -> String {
     let name = scene.replace("{{", "{ ").replace("}}", "} ");
     let plain = name.chars().filter(|letter| !letter.is_control());
-    plain.take(LONGEST_NAME).collect()
+    plain.take(MAX_NAME_LENGTH).collect()
 }
 
 /// Whether a text is the template with the values of some scene, and nothing written by hand.
@@ -146,12 +149,12 @@ fn is_template(text: &str) -> bool {
     let template = TEMPLATE.replace("@CHUNK@", &CHUNK.to_string());
     // All parts of the template between its keys must occur verbatim.
     let mut parts = template.split('@').step_by(2);
-    let rest = parts.next().and_then(|first| text.strip_prefix(first));
-    let rest = parts.try_fold(rest.unwrap_or_default(), |rest, part| {
-        let (value, rest) = rest.split_once(part)?;
-        (!value.contains('\n')).then_some(rest)
+    let remaining = parts.next().and_then(|first| text.strip_prefix(first));
+    let remaining = parts.try_fold(remaining.unwrap_or_default(), |remaining, part| {
+        let (value, remaining) = remaining.split_once(part)?;
+        (!value.contains('\n')).then_some(remaining)
     });
-    rest == Some("")
+    remaining == Some("")
 }
 
 /// Fills in the template: frames in chunks, then a video of all of them. The scene is an attached file, which lies
@@ -171,19 +174,19 @@ fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
         ("@ANTIALIAS@", quoted(&sequence.antialias())),
         ("@CHUNK@", CHUNK.to_string()),
     ];
-    let place_of = |rest: &str| {
-        let places = values.iter().filter_map(|(key, value)| {
-            let at = rest.find(key)?;
+    let next_key = |remaining: &str| {
+        let keys_found = values.iter().filter_map(|(key, value)| {
+            let at = remaining.find(key)?;
             Some((at, *key, value.clone()))
         });
-        places.min_by_key(|(at, ..)| *at)
+        keys_found.min_by_key(|(at, ..)| *at)
     };
     // Inserted values are not searched for keys: a scene may have any name.
-    let (mut text, mut rest) = (String::new(), TEMPLATE);
-    while let Some((at, key, value)) = place_of(rest) {
-        text.push_str(&rest[..at]);
+    let (mut text, mut remaining) = (String::new(), TEMPLATE);
+    while let Some((at, key, value)) = next_key(remaining) {
+        text.push_str(&remaining[..at]);
         text.push_str(&value);
-        rest = &rest[at + key.len()..];
+        remaining = &remaining[at + key.len()..];
     }
-    text + rest
+    text + remaining
 }

@@ -12,7 +12,7 @@ use crate::files::{open_file, read_file};
 /// The file's name.
 pub const MANIFEST: &str = "glint-frames.txt";
 /// Its first line.
-const HEAD: &str =
+const HEADER: &str =
     "# Frames by Glint: file, hash of its bytes, fingerprint of what it shows, milliseconds";
 
 /// Hash of a file or of a scene; 64 hexadecimal digits in the manifest.
@@ -20,7 +20,7 @@ pub type Hash = blake3::Hash;
 
 /// The entry for a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Note {
+struct Entry {
     content: Hash,
     fingerprint: Hash,
 }
@@ -29,7 +29,7 @@ struct Note {
 #[derive(Debug)]
 pub struct Manifest {
     folder: PathBuf,
-    notes: HashMap<String, Note>,
+    entries: HashMap<String, Entry>,
 }
 
 impl Manifest {
@@ -49,57 +49,57 @@ impl Manifest {
             }
             Err(error) => return Err(error),
         };
-        let notes = text.split_inclusive('\n').filter_map(note);
+        let entries = text.split_inclusive('\n').filter_map(parse_entry);
         Ok(Self {
             folder: folder.to_owned(),
-            notes: notes.collect(),
+            entries: entries.collect(),
         })
     }
 
     /// Whether there is an entry for the file, and a file of that name exists.
-    pub fn is_noted(&self, file: &str) -> bool {
-        self.notes.contains_key(file) && self.folder.join(file).exists()
+    pub fn has_file(&self, file: &str) -> bool {
+        self.entries.contains_key(file) && self.folder.join(file).exists()
     }
 
     /// Whether a file has been written since, according to a newer manifest.
-    pub fn is_other(&self, newer: &Self, file: &str) -> bool {
-        self.notes.get(file) != newer.notes.get(file)
+    pub fn is_rewritten(&self, newer: &Self, file: &str) -> bool {
+        self.entries.get(file) != newer.entries.get(file)
     }
 
     /// Whether there is an entry for the file with another fingerprint.
-    pub fn shows_other(&self, file: &str, fingerprint: &Hash) -> bool {
-        let note = self.notes.get(file);
-        note.is_some_and(|note| note.fingerprint != *fingerprint)
+    pub fn has_other_fingerprint(&self, file: &str, fingerprint: &Hash) -> bool {
+        let entry = self.entries.get(file);
+        entry.is_some_and(|entry| entry.fingerprint != *fingerprint)
     }
 
     /// Whether the file exists, is unchanged since it was written, and has this fingerprint.
     pub fn is_valid(&self, file: &str, fingerprint: &Hash) -> bool {
-        let Some(note) = self.notes.get(file) else {
+        let Some(entry) = self.entries.get(file) else {
             return false;
         };
-        let is_same = note.fingerprint == *fingerprint;
-        let content = || open_file(&self.folder.join(file)).and_then(|file| content_of(&file));
-        is_same && content().is_ok_and(|found| found == note.content)
+        let is_same = entry.fingerprint == *fingerprint;
+        let content = || open_file(&self.folder.join(file)).and_then(|file| hash_file(&file));
+        is_same && content().is_ok_and(|found| found == entry.content)
     }
 }
 
-fn note(line: &str) -> Option<(String, Note)> {
+fn parse_entry(line: &str) -> Option<(String, Entry)> {
     let line = line.strip_suffix('\n')?;
     let mut cells = line.split('\t');
     let (file, content, fingerprint) = (cells.next()?, cells.next()?, cells.next()?);
-    let note = Note {
+    let entry = Entry {
         content: Hash::from_hex(content).ok()?,
         fingerprint: Hash::from_hex(fingerprint).ok()?,
     };
     // The time is not used, but a line without it was truncated.
-    cells.next().map(|_| (file.to_owned(), note))
+    cells.next().map(|_| (file.to_owned(), entry))
 }
 
 /// Returns the hash of a file from its current position on.
 ///
 /// # Errors
 /// Any error of the system.
-pub fn content_of(file: &File) -> io::Result<Hash> {
+pub fn hash_file(file: &File) -> io::Result<Hash> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(file)?;
     Ok(hasher.finalize())
@@ -110,7 +110,7 @@ pub fn content_of(file: &File) -> io::Result<Hash> {
 ///
 /// # Errors
 /// Any error of the system.
-pub fn add_note(
+pub fn append_entry(
     folder: &Path,
     file: &str,
     content: &Hash,
@@ -134,7 +134,7 @@ fn open(path: &Path) -> io::Result<(File, String)> {
     options.append(true).read(true);
     match options.clone().create_new(true).open(path) {
         Ok(mut file) => {
-            file.write_all(format!("{HEAD}\n").as_bytes())?;
+            file.write_all(format!("{HEADER}\n").as_bytes())?;
             return Ok((file, String::new()));
         }
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}

@@ -13,7 +13,7 @@ use std::time::Duration;
 use glam::DVec3;
 
 use super::error::last_lines;
-use super::program::end_of;
+use super::program::wait_for_exit;
 use crate::files::without_path;
 use crate::image::Image;
 use crate::plan::PackedMesh;
@@ -24,7 +24,7 @@ use crate::scene::{
 use crate::trace::RenderControl;
 
 /// Least channel of a pigment: POV-Ray multiplies by the pigment, so what is added has to be divided by it first.
-const LEAST: f64 = 1e-6;
+const MIN_CHANNEL: f64 = 1e-6;
 
 /// The reason why POV-Ray has drawn no picture.
 #[derive(Debug, thiserror::Error)]
@@ -80,18 +80,18 @@ pub fn povray_text(scene: &Scene) -> String {
         write_marker(&mut pov, scene, light);
     }
     let total: f64 = scene.visible_lights().map(|light| light.intensity).sum();
-    let mut wearers: HashMap<&str, Vec<&Shape>> = HashMap::new();
+    let mut shapes_by_pack: HashMap<&str, Vec<&Shape>> = HashMap::new();
     for object in scene.visible_objects() {
-        let alike = wearers.entry(&object.color_pack).or_default();
-        alike.push(&object.shape);
+        let shapes = shapes_by_pack.entry(&object.color_pack).or_default();
+        shapes.push(&object.shape);
     }
     for (name, pack) in scene.color_packs.iter() {
-        let Some(worn) = wearers.get(name.as_str()) else {
+        let Some(pack_shapes) = shapes_by_pack.get(name.as_str()) else {
             continue;
         };
         let texture = texture(pack, total);
         let mut shapes = String::new();
-        for shape in worn {
+        for shape in pack_shapes {
             write_shape(&mut shapes, shape, &texture);
         }
         if shapes.is_empty() {
@@ -121,7 +121,7 @@ impl Highlight {
     fn of(pack: &ColorPack) -> Self {
         let share = pack.specular.max_element() / 255.0;
         let color = if share > 0.0 {
-            (pack.specular / (share * 255.0)).max(DVec3::splat(LEAST))
+            (pack.specular / (share * 255.0)).max(DVec3::splat(MIN_CHANNEL))
         } else {
             DVec3::ONE
         };
@@ -186,8 +186,8 @@ fn write_shape(pov: &mut String, shape: &Shape, texture: &str) {
         }
         Shape::Plane(Plane { point, normal }) => {
             let normal = unit(*normal).unwrap_or(DVec3::Y);
-            let (across, offset) = (vector(normal), normal.dot(*point));
-            writeln!(pov, "plane {{ {across}, {offset:?} {texture} }}")
+            let (direction, offset) = (vector(normal), normal.dot(*point));
+            writeln!(pov, "plane {{ {direction}, {offset:?} {texture} }}")
         }
         Shape::Disc(Disc {
             center,
@@ -235,7 +235,7 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
     let highlight = Highlight::of(pack);
     // The lights have the colour of the highlight, and only the highlight is to have it, so the pigment is divided by
     // it. POV-Ray multiplies ambient light by the pigment, so that is divided by the pigment.
-    let pigment = pack.diffuse.max(DVec3::splat(LEAST * 255.0)) / highlight.color;
+    let pigment = pack.diffuse.max(DVec3::splat(MIN_CHANNEL * 255.0)) / highlight.color;
     let share = pack.ambient / pigment;
     let specular = highlight.share;
     let mirror = if pack.reflective {
@@ -244,7 +244,7 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
         DVec3::ZERO
     };
     // An exponent of 0 is as wide as a highlight can be.
-    let roughness = 1.0 / pack.phong_exponent.max(LEAST);
+    let roughness = 1.0 / pack.phong_exponent.max(MIN_CHANNEL);
     format!(
         "pigment {{ {} }} finish {{ ambient rgb {} diffuse 1 specular {specular:?} roughness {roughness:?} reflection {{ rgb {} }} }}",
         color(pigment),
@@ -254,7 +254,7 @@ fn texture(pack: &ColorPack, total_intensity: f64) -> String {
 }
 
 /// Sizes of objects that POV-Ray draws, in world units: of triangles of size 1e-6 or 1e7, it draws nothing.
-const SEEN: RangeInclusive<f64> = 1e-5..=1e6;
+const DRAWN_SIZES: RangeInclusive<f64> = 1e-5..=1e6;
 
 /// Describes, for the user, how the pictures of a scene by Glint and by POV-Ray differ beyond rounding because their
 /// models differ.
@@ -270,26 +270,26 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     let lifted = visible().any(Object::is_smooth).then_some(
         "on smooth meshes, light ends at the curved surface in Glint, and at the flat faces in POV-Ray",
     );
-    let is_seen_there = |object: &Object| {
+    let is_drawn_by_povray = |object: &Object| {
         let size = object
             .shape
             .bounds()
             .map(|(low, high)| (high - low).max_element());
-        size.is_none_or(|size| SEEN.contains(&size))
+        size.is_none_or(|size| DRAWN_SIZES.contains(&size))
     };
-    let lost = (!visible().all(is_seen_there)).then_some(
+    let undrawn = (!visible().all(is_drawn_by_povray)).then_some(
         "objects smaller than a hundred-thousandth of a unit, or larger than a million, may be missing in POV-Ray",
     );
     let centre = scene.middle().unwrap_or_default();
-    let is_seen = |found: &Coincidence| {
+    let is_visible_overlap = |found: &Coincidence| {
         let is_hidden = matches!(found.extent, Overlap::Standing | Overlap::Touching);
         !is_hidden && !scene.look_alike(found.later, found.earlier)
     };
     let found = coincidences(&scene.objects, centre);
-    let coincident = found.iter().any(is_seen).then_some(
+    let coincident = found.iter().any(is_visible_overlap).then_some(
         "where surfaces coincide, Glint shows the first in the list, and POV-Ray either of them",
     );
-    let all = [clipped, lifted, lost, coincident];
+    let all = [clipped, lifted, undrawn, coincident];
     all.into_iter().flatten().collect()
 }
 
@@ -305,18 +305,20 @@ pub struct ByPovray {
 }
 
 /// Resolution of POV-Ray's clock: a time that it reports as 0 was at most this long.
-const TICK: Duration = Duration::from_millis(1);
+const CLOCK_RESOLUTION: Duration = Duration::from_millis(1);
 
 /// Parses POV-Ray's statistics: the tracing time and the number of rays.
-fn statistics(said: &str) -> Option<(Duration, u64)> {
-    let after = |word: &str| said.split_once(word).map(|(_, rest)| rest.trim_start());
+fn statistics(log: &str) -> Option<(Duration, u64)> {
+    let after = |word: &str| log.split_once(word).map(|(_, rest)| rest.trim_start());
     let number = |word: &str| {
         let digits = after(word)?.split(|c: char| !c.is_ascii_digit()).next()?;
         digits.parse::<u64>().ok()
     };
     let seconds = after("Trace Time:")?.split_once('(')?.1;
     let seconds = seconds.split_once(" seconds)")?.0.parse().ok()?;
-    let time = Duration::try_from_secs_f64(seconds).ok()?.max(TICK);
+    let time = Duration::try_from_secs_f64(seconds)
+        .ok()?
+        .max(CLOCK_RESOLUTION);
     // Without lights there are no shadow tests.
     let shadows = number("Shadow Ray Tests:").unwrap_or(0);
     Some((time, number("Rays:")? + shadows))
@@ -342,7 +344,7 @@ pub fn by_povray(
     std::fs::write(&path, povray_text(scene)).map_err(disk(&path))?;
     // To a file: a pipe could fill up and block it.
     let path = folder.join("said.txt");
-    let said = File::create(&path).map_err(disk(&path))?;
+    let log = File::create(&path).map_err(disk(&path))?;
     let Render { width, height, .. } = scene.render;
     let run = Command::new("povray")
         .args(["+Iscene.pov", "+Oscene.png", "-D", "+FN8", "-A"])
@@ -355,21 +357,21 @@ pub fn by_povray(
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(said)
+        .stderr(log)
         .spawn();
     let mut child = run.map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => PovrayError::Missing,
         _ => disk(Path::new("povray"))(source),
     })?;
     let is_wanted = || !control.is_stopped();
-    let status = end_of(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
+    let status = wait_for_exit(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;
     let status = status.ok_or(PovrayError::Stopped)?;
-    let said = std::fs::read(&path).map_err(disk(&path))?;
-    let failed = || PovrayError::Failed(last_lines(&said));
+    let log = std::fs::read(&path).map_err(disk(&path))?;
+    let failed = || PovrayError::Failed(last_lines(&log));
     if !status.success() {
         return Err(failed());
     }
-    let (time, rays) = statistics(&String::from_utf8_lossy(&said)).ok_or_else(failed)?;
+    let (time, rays) = statistics(&String::from_utf8_lossy(&log)).ok_or_else(failed)?;
     let picture = image::open(folder.join("scene.png"))?.to_rgba8();
     Ok(ByPovray {
         picture: Image::from(&picture),

@@ -9,7 +9,7 @@ use std::time::Duration;
 const TICK: Duration = Duration::from_millis(5);
 
 /// Waits until a program ends. If `is_wanted` returns false before, the program is killed, and the result is `None`.
-pub fn end_of(
+pub fn wait_for_exit(
     program: &mut Child,
     mut is_wanted: impl FnMut() -> bool,
 ) -> io::Result<Option<ExitStatus>> {

@@ -30,8 +30,10 @@ pub fn save_picture(
     encode: impl FnOnce(Format, &mut BufWriter<&File>) -> Result<(), ImageError>,
 ) -> Result<(), ExportError> {
     let format = Format::of_path(path)?;
-    let beside = write_beside(path, |file| encode(format, file))?;
-    beside.place_durably().map_err(|source| disk(path, source))
+    let new_file = write_beside(path, |file| encode(format, file))?;
+    new_file
+        .place_durably()
+        .map_err(|source| disk_error(path, source))
 }
 
 /// Writes the output of `encode` to a new file beside `path`, to be moved there.
@@ -42,18 +44,18 @@ pub fn write_beside(
     path: &Path,
     encode: impl FnOnce(&mut BufWriter<&File>) -> Result<(), ImageError>,
 ) -> Result<NewFile, ExportError> {
-    let beside = NewFile::beside(path).map_err(|source| disk(path, source))?;
-    let mut file = BufWriter::with_capacity(BUFFER, beside.as_file());
+    let new_file = NewFile::beside(path).map_err(|source| disk_error(path, source))?;
+    let mut file = BufWriter::with_capacity(BUFFER, new_file.as_file());
     encode(&mut file).map_err(|error| match error {
-        ImageError::IoError(source) => disk(path, source),
+        ImageError::IoError(source) => disk_error(path, source),
         source => ExportError::Encode {
             path: path.to_owned(),
             source,
         },
     })?;
-    file.flush().map_err(|source| disk(path, source))?;
+    file.flush().map_err(|source| disk_error(path, source))?;
     drop(file);
-    Ok(beside)
+    Ok(new_file)
 }
 
 /// Checks that a file can be written at `path`, before its contents are computed. Unfinished files that killed
@@ -62,8 +64,8 @@ pub fn write_beside(
 /// # Errors
 /// [`ExportError::Disk`].
 pub fn check_place(path: &Path) -> Result<(), ExportError> {
-    let beside = NewFile::beside(path).map_err(|source| disk(path, source))?;
-    if let Some(folder) = beside.path().parent() {
+    let new_file = NewFile::beside(path).map_err(|source| disk_error(path, source))?;
+    if let Some(folder) = new_file.path().parent() {
         remove_leftovers(folder);
     }
     Ok(())
@@ -74,11 +76,11 @@ pub fn check_place(path: &Path) -> Result<(), ExportError> {
 /// # Errors
 /// [`ExportError::Disk`]; an existing file at `path` is then untouched.
 pub fn write_text(path: &Path, text: &str) -> Result<(), ExportError> {
-    write_atomic(path, text.as_bytes()).map_err(|source| disk(path, source))
+    write_atomic(path, text.as_bytes()).map_err(|source| disk_error(path, source))
 }
 
 /// The error for a failed write.
-pub fn disk(path: &Path, source: io::Error) -> ExportError {
+pub fn disk_error(path: &Path, source: io::Error) -> ExportError {
     ExportError::Disk {
         path: path.to_owned(),
         source,

@@ -11,9 +11,9 @@ use image::ImageError;
 use super::error::ExportError;
 use super::fingerprint::fingerprint;
 use super::frames::{Frames, FramesError};
-use super::manifest::{Hash, MANIFEST, Manifest, add_note, content_of};
+use super::manifest::{Hash, MANIFEST, Manifest, append_entry, hash_file};
 use super::pattern::Pattern;
-use super::save::{disk, write_beside};
+use super::save::{disk_error, write_beside};
 use crate::animate::{CameraPath, shot};
 use crate::files::{make_folder, remove_leftovers};
 use crate::image::Format;
@@ -23,7 +23,7 @@ use crate::words::counted;
 /// Most pixels of all frames that are traced at once; also of all that are being encoded meanwhile, and of all that
 /// are being made into a video. It bounds the memory, however large the frames are and however many threads there
 /// are.
-const MOST_PIXELS: usize = 1 << 26;
+const MAX_PIXELS_AT_ONCE: usize = 1 << 26;
 
 /// The message about a video of a [`Sequence`] that is a loop.
 pub const LOOP_HINT: &str = "its last frame repeats the first: leave it out for a smooth loop";
@@ -95,12 +95,14 @@ impl Sequence {
     /// The frame rate at which the exported frames play at the speed of the animation: lower if some frames are
     /// skipped.
     pub fn frames_per_second(&self) -> f64 {
-        let whole = self.scene.animation.frames_per_second;
+        let animation_rate = self.scene.animation.frames_per_second;
         let (first, last) = (self.frames.iter().next(), self.frames.last());
         let steps = self.frames.count().saturating_sub(1);
         match (first, last) {
-            (Some(first), Some(last)) if steps > 0 => whole * steps as f64 / (last - first) as f64,
-            _ => whole,
+            (Some(first), Some(last)) if steps > 0 => {
+                animation_rate * steps as f64 / (last - first) as f64
+            }
+            _ => animation_rate,
         }
     }
 
@@ -113,7 +115,7 @@ impl Sequence {
     pub fn at_once(&self, wanted: usize) -> usize {
         let (width, height) = self.size();
         let pixels = (width as usize * height as usize).max(1);
-        wanted.clamp(1, (MOST_PIXELS / pixels).max(1))
+        wanted.clamp(1, (MAX_PIXELS_AT_ONCE / pixels).max(1))
     }
 
     /// The identifier of the antialiasing method.
@@ -150,7 +152,7 @@ impl Sequence {
     /// # Errors
     /// [`ExportError::Disk`].
     pub fn prepare(&self) -> Result<(), ExportError> {
-        make_folder(&self.folder).map_err(|source| disk(&self.folder, source))?;
+        make_folder(&self.folder).map_err(|source| disk_error(&self.folder, source))?;
         remove_leftovers(&self.folder);
         Ok(())
     }
@@ -174,7 +176,7 @@ impl Sequence {
     pub fn is_valid(&self, manifest: &Manifest, frame: u64) -> Result<bool, ExportError> {
         let file = self.file(frame);
         // Checked first, as computing the fingerprint takes a while.
-        if !manifest.is_noted(&file) {
+        if !manifest.has_file(&file) {
             return Ok(false);
         }
         let fingerprint = fingerprint(&self.shown(frame), self.format)?;
@@ -195,8 +197,8 @@ impl Sequence {
             camera: first.camera.clone(),
             ..Scene::clone(&last)
         };
-        let print = |scene: &Scene| fingerprint(scene, self.format).ok();
-        print(&first).is_some_and(|first| print(&last) == Some(first))
+        let fingerprint_of = |scene: &Scene| fingerprint(scene, self.format).ok();
+        fingerprint_of(&first).is_some_and(|first| fingerprint_of(&last) == Some(first))
     }
 
     /// Writes a frame: the output of `encode`, which returns how long the frame took to trace, goes to a new file,
@@ -213,17 +215,17 @@ impl Sequence {
     ) -> Result<(), ExportError> {
         let path = self.path(frame);
         let mut time = Duration::ZERO;
-        let beside = write_beside(&path, |file| {
+        let new_file = write_beside(&path, |file| {
             time = encode(file)?;
             Ok(())
         })?;
         // Read through the open file: on some systems, a locked file cannot be read otherwise.
-        let mut file = beside.as_file();
-        let content = file.rewind().and_then(|()| content_of(file));
-        let placed = content.and_then(|content| beside.place().map(|()| content));
-        let content = placed.map_err(|source| disk(&path, source))?;
-        add_note(&self.folder, &self.file(frame), &content, fingerprint, time)
-            .map_err(|source| disk(&self.folder.join(MANIFEST), source))
+        let mut file = new_file.as_file();
+        let content = file.rewind().and_then(|()| hash_file(file));
+        let placed = content.and_then(|content| new_file.place().map(|()| content));
+        let content = placed.map_err(|source| disk_error(&path, source))?;
+        append_entry(&self.folder, &self.file(frame), &content, fingerprint, time)
+            .map_err(|source| disk_error(&self.folder.join(MANIFEST), source))
     }
 }
 

@@ -4,9 +4,9 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::time::Duration;
 
-use super::animated::{LONGEST_IN_APNG, LONGEST_IN_GIF, apng, gif, left_out, time_of_gif};
+use super::animated::{MAX_APNG_DELAY, MAX_GIF_DELAY, apng, estimate_gif_time, gif, left_out};
 use super::error::{ExportError, VideoError};
-use super::ffmpeg::by_ffmpeg;
+use super::ffmpeg::make_with_ffmpeg;
 use super::sequence::Sequence;
 use crate::files::NewFile;
 use crate::image::Image;
@@ -61,8 +61,8 @@ impl Video {
 
     /// The format with this extension, in any case.
     pub fn of_ending(ending: &str) -> Option<Self> {
-        let is_it = |video: &Self| ending.eq_ignore_ascii_case(video.ending());
-        Self::ALL.into_iter().find(is_it)
+        let has_ending = |video: &Self| ending.eq_ignore_ascii_case(video.ending());
+        Self::ALL.into_iter().find(has_ending)
     }
 
     /// The format for a file's extension.
@@ -78,7 +78,7 @@ impl Video {
     /// Estimates how long `threads` threads take to make it of frames like `image`; `None` if ffmpeg makes it, or if
     /// that takes little time compared to tracing.
     pub fn forecast(self, sequence: &Sequence, image: &Image, threads: usize) -> Option<Duration> {
-        (self == Self::Gif).then(|| time_of_gif(sequence, image, threads))
+        (self == Self::Gif).then(|| estimate_gif_time(sequence, image, threads))
     }
 
     /// Makes a video of the frames of a sequence, all of which must exist, and puts it in place once it is complete.
@@ -93,14 +93,14 @@ impl Video {
         mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
         let before = sequence.manifest()?;
-        let beside = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
-        let lent = || (beside.lend(), path);
+        let new_file = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
+        let ffmpeg_target = || (new_file.lend(), path);
         match self {
-            Self::Gif => gif(sequence, (beside.as_file(), path), &mut go_on)?,
-            Self::Apng => apng(sequence, (beside.as_file(), path), &mut go_on)?,
-            Self::H264 => by_ffmpeg(sequence, lent(), H264, &mut go_on)?,
-            Self::ProRes => by_ffmpeg(sequence, lent(), PRORES, &mut go_on)?,
-            Self::Lossless => by_ffmpeg(sequence, lent(), LOSSLESS, &mut go_on)?,
+            Self::Gif => gif(sequence, (new_file.as_file(), path), &mut go_on)?,
+            Self::Apng => apng(sequence, (new_file.as_file(), path), &mut go_on)?,
+            Self::H264 => make_with_ffmpeg(sequence, ffmpeg_target(), H264, &mut go_on)?,
+            Self::ProRes => make_with_ffmpeg(sequence, ffmpeg_target(), PRORES, &mut go_on)?,
+            Self::Lossless => make_with_ffmpeg(sequence, ffmpeg_target(), LOSSLESS, &mut go_on)?,
         }
         // It may have been cancelled at the last moment.
         if !go_on(sequence.frames.count()) {
@@ -110,13 +110,13 @@ impl Video {
         let after = sequence.manifest()?;
         let mut changed = sequence.frames.iter().filter(|frame| {
             let file = sequence.file(*frame);
-            before.is_other(&after, &file)
+            before.is_rewritten(&after, &file)
         });
         if let Some(frame) = changed.next() {
             let path = sequence.path(frame);
             return Err(ExportError::Changed { path }.into());
         }
-        let placed = beside.place();
+        let placed = new_file.place();
         placed.map_err(|error| VideoError::disk(path, &error))
     }
 
@@ -138,7 +138,7 @@ impl Video {
             "the frames are not equally far apart, but the video shows each of them for the same time"
                 .to_owned()
         });
-        let with = |remark: Option<String>| {
+        let with_uneven = |remark: Option<String>| {
             let remarks: Vec<String> = remark.into_iter().chain(uneven).collect();
             Ok((!remarks.is_empty()).then(|| remarks.join("; ")))
         };
@@ -148,19 +148,19 @@ impl Video {
             )),
             Self::H264 if width % 2 + height % 2 > 0 => {
                 let [width, height] = [width, height].map(|side| side / 2 * 2);
-                with(Some(format!(
+                with_uneven(Some(format!(
                     "an .mp4 has an even width and height: it shows {width} × {height} pixels"
                 )))
             }
-            Self::Gif if 1.0 / fps > LONGEST_IN_GIF => too_long("a .gif", LONGEST_IN_GIF),
-            Self::Apng if 1.0 / fps > LONGEST_IN_APNG => too_long("an .apng", LONGEST_IN_APNG),
-            Self::Gif => with(match left_out(fps, count) {
+            Self::Gif if 1.0 / fps > MAX_GIF_DELAY => too_long("a .gif", MAX_GIF_DELAY),
+            Self::Apng if 1.0 / fps > MAX_APNG_DELAY => too_long("an .apng", MAX_APNG_DELAY),
+            Self::Gif => with_uneven(match left_out(fps, count) {
                 0 => None,
                 out => Some(format!(
                     "a .gif shows at most 50 frames per second: {out} of {count} are left out"
                 )),
             }),
-            _ => with(None),
+            _ => with_uneven(None),
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::error::ExportError;
 use super::manifest::Hash;
-use super::save::disk;
+use super::save::disk_error;
 use super::sequence::Sequence;
 use crate::image::Film;
 
@@ -51,7 +51,7 @@ impl Writers {
             std::thread::Builder::new()
                 .name(format!("glint-writer-{index}"))
                 .spawn(move || write_all(&sequence, &to_write, &to_return))
-                .map_err(|source| disk(&folder, source))?;
+                .map_err(|source| disk_error(&folder, source))?;
         }
         Ok(Self { jobs, results })
     }

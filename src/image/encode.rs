@@ -48,8 +48,8 @@ impl Format {
 
     /// The format with this extension, in upper or lower case.
     pub fn of_ending(ending: &str) -> Option<Self> {
-        let is_it = |format: &Self| ending.eq_ignore_ascii_case(format.ending());
-        Self::ALL.into_iter().find(is_it)
+        let has_ending = |format: &Self| ending.eq_ignore_ascii_case(format.ending());
+        Self::ALL.into_iter().find(has_ending)
     }
 
     /// The format for a file's extension.
@@ -125,7 +125,7 @@ fn write_png(
     file: &mut impl Write,
 ) -> Result<(), png::EncodingError> {
     let (width, height) = rows.size();
-    let mut encoder = png::Encoder::new(file, short(width), short(height));
+    let mut encoder = png::Encoder::new(file, to_u32(width), to_u32(height));
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
@@ -150,7 +150,7 @@ fn write_rows(rows: &mut impl Rows<[u8; 4]>, file: &mut impl Write) -> io::Resul
 }
 
 /// Converts a side to 32 bits; none comes close to the limit.
-fn short(side: usize) -> u32 {
+fn to_u32(side: usize) -> u32 {
     u32::try_from(side).unwrap_or(u32::MAX)
 }
 

@@ -68,12 +68,12 @@ impl ObjectMap {
 #[derive(Debug, Default)]
 pub struct ObjectMapper {
     planner: Planner,
-    last: Option<Numbered>,
+    last: Option<NumberedScene>,
 }
 
 /// A scene in numbered colours, and what it was made from.
 #[derive(Debug)]
-struct Numbered {
+struct NumberedScene {
     objects: List<Object>,
     lights: List<Light>,
     without: Vec<Thing>,
@@ -115,7 +115,7 @@ impl ObjectMapper {
             return last.scene.clone();
         }
         let numbered = numbered(scene, without);
-        self.last = Some(Numbered {
+        self.last = Some(NumberedScene {
             objects: scene.objects.clone(),
             lights: scene.lights.clone(),
             without: without.to_vec(),
@@ -127,10 +127,10 @@ impl ObjectMapper {
 
 /// Returns the scene without lighting, each thing in the colour of its number; numbers start at 1, with lights first.
 fn numbered(scene: &Scene, without: &[Thing]) -> Scene {
-    let is_there = |thing: Thing| !without.contains(&thing);
+    let is_included = |thing: Thing| !without.contains(&thing);
     let lights = scene.lights.iter().enumerate().map(|(index, light)| Light {
         intensity: 0.0,
-        visible: light.visible && is_there(Thing::Light(index)),
+        visible: light.visible && is_included(Thing::Light(index)),
         marker: light.marker.as_ref().map(|marker| LightObj {
             color_pack: (index + 1).to_string(),
             ..marker.clone()
@@ -144,7 +144,7 @@ fn numbered(scene: &Scene, without: &[Thing]) -> Scene {
         .enumerate()
         .map(|(index, object)| Object {
             color_pack: (first + index).to_string(),
-            visible: object.visible && is_there(Thing::Object(index)),
+            visible: object.visible && is_included(Thing::Object(index)),
             ..object.clone()
         });
     let packs = (1..first + scene.objects.len()).map(|number| (number.to_string(), pack(number)));

@@ -20,7 +20,7 @@ pub struct Strips<'a, P> {
     tracer: Tracer,
     control: &'a RenderControl,
     /// Number of rows of a strip.
-    step: usize,
+    strip_rows: usize,
     /// The pixels of the current strip.
     strip: &'a mut Vec<P>,
     /// The rows of the current strip.
@@ -40,7 +40,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
         let watch = control.stopwatch();
         let tracer = Tracer::planned(scene, request, planner);
         Self {
-            step: tracer.strip(),
+            strip_rows: tracer.strip(),
             tracer,
             control,
             strip,
@@ -51,7 +51,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
     }
 
     /// Traces the next strip, if any.
-    fn go_on(&mut self) -> io::Result<()> {
+    fn trace_next(&mut self) -> io::Result<()> {
         if self.rows.end < self.tracer.height() {
             self.trace(self.rows.end).ok_or_else(unwanted)?;
         }
@@ -61,7 +61,7 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
     /// Traces all remaining strips.
     fn finish(&mut self) -> io::Result<()> {
         while self.rows.end < self.tracer.height() {
-            self.go_on()?;
+            self.trace_next()?;
         }
         Ok(())
     }
@@ -77,8 +77,8 @@ impl<'a, P: Pixel + Copy + Default> Strips<'a, P> {
 
     fn trace(&mut self, row: usize) -> Option<()> {
         let watch = self.control.stopwatch();
-        let first = row / self.step * self.step;
-        let rows = first..(first + self.step).min(self.tracer.height());
+        let first = row / self.strip_rows * self.strip_rows;
+        let rows = first..(first + self.strip_rows).min(self.tracer.height());
         self.strip
             .resize(rows.len() * self.tracer.width(), P::default());
         self.rays += self.tracer.rows(self.strip, first, self.control)?;
@@ -105,8 +105,8 @@ impl Drawing<'_> {
     /// [`io::ErrorKind::Interrupted`] if `control` was stopped.
     pub fn start(&mut self) -> io::Result<()> {
         match self {
-            Self::Levels(strips) => strips.go_on(),
-            Self::Linear(strips) => strips.go_on(),
+            Self::Levels(strips) => strips.trace_next(),
+            Self::Linear(strips) => strips.trace_next(),
         }
     }
 
@@ -185,8 +185,8 @@ mod tests {
             let mut drawing = film.draw(&mut planner, (&scene, &request), &control);
             match &mut drawing {
                 // With grid sampling, strips of any height show the same as the whole picture.
-                Drawing::Levels(strips) => strips.step = 64,
-                Drawing::Linear(strips) => strips.step = 64,
+                Drawing::Levels(strips) => strips.strip_rows = 64,
+                Drawing::Linear(strips) => strips.strip_rows = 64,
             }
             drawing.start().expect("not stopped");
             drawing.encode(format, &mut strips).expect("encodes");

@@ -6,19 +6,20 @@ use crate::scene::{Chosen, SphereMethod};
 use crate::words::capitalised;
 
 /// Relative difference below which ratios count as 1.
-const ALIKE: f64 = 0.05;
+const SAME_RATIO: f64 = 0.05;
 
 /// Describes a measured way, and compares it with the first, which is the default.
 pub fn account(study: &Study, index: usize) -> String {
-    let (Some(own), Some(default)) = (study.measurements.get(index), study.measurements.first())
+    let (Some(measured), Some(default)) =
+        (study.measurements.get(index), study.measurements.first())
     else {
         return String::new();
     };
-    let what = what(&own.candidate, &default.candidate);
+    let what = what(&measured.candidate, &default.candidate);
     if index == 0 {
         return what;
     }
-    compared(own, default).map_or(what.clone(), |figures| format!("{what} {figures}"))
+    compared(measured, default).map_or(what.clone(), |figures| format!("{what} {figures}"))
 }
 
 /// Describes how it differs from the default, with the source of each method.
@@ -48,7 +49,7 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
         .into_iter()
         .zip(usual)
         .filter(|(own, usual)| own.id != usual.id);
-    let mut parts: Vec<String> = differing.map(|(own, _)| words(&own)).collect();
+    let mut parts: Vec<String> = differing.map(|(own, _)| setting_in_words(&own)).collect();
     let (bounces, usual) = (
         candidate.render.reflection_limit,
         default.render.reflection_limit,
@@ -68,19 +69,20 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
 }
 
 /// Compares its time, rays and error with those of the default.
-fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
-    let (time, usual) = (own.timing()?.median, default.timing()?.median);
-    let error = own.metrics?.rmse / default.metrics?.rmse;
-    let rays = own.rays_per_pixel / default.rays_per_pixel;
-    let speed = told(
+fn compared(measured: &Measurement, default: &Measurement) -> Option<String> {
+    let (time, usual) = (measured.timing()?.median, default.timing()?.median);
+    let error = measured.metrics?.rmse / default.metrics?.rmse;
+    let rays = measured.rays_per_pixel / default.rays_per_pixel;
+    let speed = ratio_in_words(
         time / usual,
         " as fast as the default",
         " slower than the default",
     );
     let speed = speed.unwrap_or("as fast as the default".to_owned());
-    let closeness = told(error, " smaller", " larger").unwrap_or("about the same".to_owned());
+    let closeness =
+        ratio_in_words(error, " smaller", " larger").unwrap_or("about the same".to_owned());
     let rays = match rays {
-        ratio if (ratio - 1.0).abs() <= ALIKE => "as many rays".to_owned(),
+        ratio if (ratio - 1.0).abs() <= SAME_RATIO => "as many rays".to_owned(),
         ratio if ratio < 1.0 => format!("{ratio:.2}× as many rays"),
         ratio => format!("{} as many rays", times(ratio)),
     };
@@ -90,10 +92,10 @@ fn compared(own: &Measurement, default: &Measurement) -> Option<String> {
 }
 
 /// A ratio in words, with `less` or `more` added; `None` if it is about 1.
-fn told(ratio: f64, less: &str, more: &str) -> Option<String> {
+fn ratio_in_words(ratio: f64, less: &str, more: &str) -> Option<String> {
     match ratio {
-        ratio if ratio < 1.0 - ALIKE => Some(times(1.0 / ratio) + less),
-        ratio if ratio > 1.0 + ALIKE => Some(times(ratio) + more),
+        ratio if ratio < 1.0 - SAME_RATIO => Some(times(1.0 / ratio) + less),
+        ratio if ratio > 1.0 + SAME_RATIO => Some(times(ratio) + more),
         _ => None,
     }
 }
@@ -106,7 +108,7 @@ fn times(ratio: f64) -> String {
     }
 }
 
-fn words(chosen: &Chosen) -> String {
+fn setting_in_words(chosen: &Chosen) -> String {
     let Chosen {
         setting,
         id,

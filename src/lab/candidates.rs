@@ -52,7 +52,7 @@ pub struct Candidate {
 }
 
 /// Name of the scene's own settings.
-pub const OWN: &str = "this scene";
+pub const OWN_SETTINGS: &str = "this scene";
 /// Name of the other engine.
 pub const POVRAY: &str = "POV-Ray";
 
@@ -66,7 +66,7 @@ const GRIDS: [u32; 7] = [2, 3, 4, 6, 8, 12, 16];
 const ADAPTIVE: [(f64, u32); 5] = [(0.3, 1), (0.1, 1), (0.3, 3), (0.1, 2), (0.03, 3)];
 
 /// The plain samplings, then the adaptive ones other than the default.
-fn ladder() -> impl Iterator<Item = Sampling> {
+fn sampling_ladder() -> impl Iterator<Item = Sampling> {
     std::iter::once(Sampling::Centres)
         .chain(GRIDS.map(Sampling::Grid))
         .chain(ADAPTIVE.map(|(contrast, depth)| Sampling::Adaptive { contrast, depth }))
@@ -74,7 +74,7 @@ fn ladder() -> impl Iterator<Item = Sampling> {
 
 /// All samplings that are compared: grids by size, the default one last.
 pub fn samplings() -> impl Iterator<Item = Sampling> {
-    ladder().chain([Sampling::ADAPTIVE])
+    sampling_ladder().chain([Sampling::ADAPTIVE])
 }
 
 /// The ways of tracing `scene` in `width × height` pixels: the plan's choice first; the scene's own settings, if they
@@ -94,15 +94,15 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         upscale: 1,
     };
     let mut all = vec![plan.clone()];
-    let own = Render {
+    let settings = Render {
         width,
         height,
         ..scene.render.clone()
     };
-    if own != plan.render {
+    if settings != plan.render {
         all.push(Candidate {
-            name: OWN.to_owned(),
-            render: own,
+            name: OWN_SETTINGS.to_owned(),
+            render: settings,
             ..plan.clone()
         });
     }
@@ -134,7 +134,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         } else {
             Family::Precision
         };
-        change(name, family, &|own| *own = render.clone());
+        change(name, family, &|settings| *settings = render.clone());
     }
     let limit = scene.render.reflection_limit;
     if limit > 0 {
@@ -147,7 +147,7 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
             render.reflection_limit = limit + 1;
         });
     }
-    for sampling in ladder() {
+    for sampling in sampling_ladder() {
         change(sampling.id(), Family::Sampling, &|render| {
             render.antialias = sampling;
         });

@@ -40,12 +40,14 @@ impl Study {
 /// than their runs do. Certain and doubtful ones are grouped separately. Indices in a group are ascending. Incomplete
 /// measurements are in no group.
 pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
-    let known = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
+    let figures_of = |dot: &Measurement| Some((dot.timing()?, dot.metrics?));
     let mut clusters: Vec<((Timing, ErrorMetrics), Vec<usize>)> = Vec::new();
     for (index, dot) in study.measurements.iter().enumerate() {
-        let Some(figures) = known(dot) else { continue };
+        let Some(figures) = figures_of(dot) else {
+            continue;
+        };
         // A certain measurement must not be represented by a doubtful one.
-        let is_like = |index: usize| {
+        let has_similar_rays = |index: usize| {
             let other = &study.measurements[index];
             let (most, least) = (
                 other.rays_per_pixel.max(dot.rays_per_pixel),
@@ -55,7 +57,7 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
         };
         match clusters
             .iter_mut()
-            .find(|(first, cluster)| is_like(cluster[0]) && is_same(*first, figures))
+            .find(|(first, cluster)| has_similar_rays(cluster[0]) && is_same(*first, figures))
         {
             Some((_, cluster)) => cluster.push(index),
             None => clusters.push((figures, vec![index])),
@@ -101,10 +103,10 @@ pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
 
 fn is_same((a, c): (Timing, ErrorMetrics), (b, d): (Timing, ErrorMetrics)) -> bool {
     // A median may well be off by half of the interquartile range.
-    let apart = (a.median / b.median).ln().abs();
+    let log_ratio = (a.median / b.median).ln().abs();
     let spread = f64::midpoint(a.spread, b.spread).max(SAME_TIME);
-    let off = (c.rmse - d.rmse).abs();
-    apart <= spread && off <= SAME_ERROR * c.rmse.max(d.rmse)
+    let error_gap = (c.rmse - d.rmse).abs();
+    log_ratio <= spread && error_gap <= SAME_ERROR * c.rmse.max(d.rmse)
 }
 
 #[cfg(test)]

@@ -13,10 +13,10 @@ use crate::trace::RenderControl;
 
 /// Least distance of a hit from the origin of its ray, relative to the largest coordinate: closer hits are the
 /// surface that the ray starts on, found again because of rounding.
-const LEFT: f64 = 1e-10;
+const MIN_HIT_DISTANCE: f64 = 1e-10;
 
 /// Relative distance within which two hits are on the same surface: single precision cannot tell them apart.
-const ONE_SURFACE: f64 = 1e-6;
+const SAME_SURFACE_DISTANCE: f64 = 1e-6;
 
 /// What a ray hits, with its colour.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,10 +83,7 @@ impl Explanation {
 
 impl ShadingTerms {
     fn color(&self) -> DVec3 {
-        let lights = self
-            .lights
-            .iter()
-            .map(|share| share.diffuse + share.specular);
+        let lights = self.lights.iter().map(|term| term.diffuse + term.specular);
         let mirror = self.mirror.as_ref();
         let mirror = mirror.map_or(DVec3::ZERO, |(filter, seen)| *filter * seen.color());
         let sum = self.ambient + lights.sum::<DVec3>() + mirror;
@@ -110,13 +107,13 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
         projection: Projection::Perspective,
         ..scene.camera.clone()
     };
-    let mut alone = Scene {
+    let mut single_ray_scene = Scene {
         camera,
         ..scene.clone()
     };
-    alone.render.antialias = Sampling::Centres;
-    let request = RenderRequest::of(&alone, 1, 1);
-    let (picture, _) = render(&alone, &request, &RenderControl::default())?;
+    single_ray_scene.render.antialias = Sampling::Centres;
+    let request = RenderRequest::of(&single_ray_scene, 1, 1);
+    let (picture, _) = render(&single_ray_scene, &request, &RenderControl::default())?;
     let [red, green, blue, _] = picture.pixels.first()?.map(f64::from);
     Some(linear(DVec3::new(red, green, blue)))
 }
@@ -124,9 +121,9 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
 /// The first object that a ray with a unit direction hits, as an index into the scene's list, and its distance;
 /// `None` if a light's marker comes first. Of several objects in one surface, any may be returned.
 pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
-    let met = nearest(scene, origin, direction)?;
-    match met.what {
-        HitKind::Object(index) => Some((index, met.t)),
+    let hit = nearest_hit(scene, origin, direction)?;
+    match hit.kind {
+        HitKind::Object(index) => Some((index, hit.t)),
         HitKind::Marker(..) => None,
     }
 }
@@ -135,7 +132,7 @@ pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usiz
 struct RayHit<'a> {
     t: f64,
     normal: DVec3,
-    what: HitKind<'a>,
+    kind: HitKind<'a>,
 }
 
 #[derive(Clone, Copy)]
@@ -149,12 +146,12 @@ fn linear(color: DVec3) -> DVec3 {
 }
 
 fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32) -> Explanation {
-    let Some(met) = nearest(scene, origin, direction) else {
+    let Some(hit) = nearest_hit(scene, origin, direction) else {
         return Explanation::Sky(linear(scene.background));
     };
-    let met = in_its_place(scene, &met, (origin, direction)).unwrap_or(met);
+    let hit = earlier_coincident_hit(scene, &hit, (origin, direction)).unwrap_or(hit);
     let pack_of = |name: &str| scene.color_packs.get(name).cloned().unwrap_or_default();
-    let index = match met.what {
+    let index = match hit.kind {
         HitKind::Marker(light, pack) => {
             return Explanation::Marker(light.to_owned(), linear(pack_of(pack).ambient));
         }
@@ -162,15 +159,15 @@ fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32)
     };
     let object = &scene.objects[index];
     let pack = pack_of(&object.color_pack);
-    let point = origin + direction * met.t;
-    let normal = if met.normal.dot(direction) > 0.0 {
-        -met.normal
+    let point = origin + direction * hit.t;
+    let normal = if hit.normal.dot(direction) > 0.0 {
+        -hit.normal
     } else {
-        met.normal
+        hit.normal
     };
     let shining = scene.visible_lights();
     let lights = shining.clone().filter(|light| light.intensity > 0.0);
-    let lights = lights.map(|light| share(scene, &pack, light, (point, normal, direction)));
+    let lights = lights.map(|light| light_term(scene, &pack, light, (point, normal, direction)));
     let mirror = (pack.reflective && bounces < scene.render.reflection_limit).then(|| {
         let mirrored = direction - normal * (2.0 * direction.dot(normal));
         let intensities: f64 = shining.map(|light| light.intensity).sum();
@@ -183,7 +180,7 @@ fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32)
         point,
         normal,
         is_smooth: object.is_smooth(),
-        distance: met.t,
+        distance: hit.t,
         ambient: linear(pack.ambient) * scene.ambient_intensity,
         lights: lights.collect(),
         mirror,
@@ -192,21 +189,21 @@ fn explain_ray(scene: &Scene, (origin, direction): (DVec3, DVec3), bounces: u32)
 
 /// The contribution of a light by Phong's model with Blinn's half vector: "Models of light reflection for computer
 /// synthesized pictures", SIGGRAPH 1977.
-fn share(
+fn light_term(
     scene: &Scene,
     pack: &ColorPack,
     light: &crate::scene::Light,
     (point, normal, direction): (DVec3, DVec3, DVec3),
 ) -> LightTerm {
-    let arm = light.position - point;
-    let towards = arm.normalize_or_zero();
+    let to_light = light.position - point;
+    let towards = to_light.normalize_or_zero();
     let cosine = normal.dot(towards);
     let blocker = (cosine > 0.0)
-        .then(|| blocker(scene, point, towards, arm.length()))
+        .then(|| blocker(scene, point, towards, to_light.length()))
         .flatten();
     let half = (towards - direction).normalize_or_zero();
     let highlight = normal.dot(half).max(0.0).powf(pack.phong_exponent);
-    let shines = if cosine > 0.0 && blocker.is_none() {
+    let received = if cosine > 0.0 && blocker.is_none() {
         light.intensity
     } else {
         0.0
@@ -216,27 +213,27 @@ fn share(
         intensity: light.intensity,
         cosine,
         blocker,
-        diffuse: linear(pack.diffuse) * (shines * cosine.max(0.0)),
-        specular: linear(pack.specular) * (shines * highlight),
+        diffuse: linear(pack.diffuse) * (received * cosine.max(0.0)),
+        specular: linear(pack.specular) * (received * highlight),
     }
 }
 
-fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>> {
+fn nearest_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>> {
     let objects = scene.objects.iter().enumerate();
     let objects = objects
         .filter(|(_, object)| object.visible)
         .filter_map(|(index, object)| {
             let (t, normal) = meet(&object.shape, origin, direction)?;
-            let what = HitKind::Object(index);
-            Some(RayHit { t, normal, what })
+            let kind = HitKind::Object(index);
+            Some(RayHit { t, normal, kind })
         });
     let lights = scene.lights.iter();
     let lights = lights.filter(|light| light.visible && scene.light_visualization);
     let markers = lights.filter_map(|light| {
         let marker = light.marker.as_ref()?;
         let (t, normal) = meet_ball(light.position, marker.radius, origin, direction)?;
-        let what = HitKind::Marker(&light.name, &marker.color_pack);
-        Some(RayHit { t, normal, what })
+        let kind = HitKind::Marker(&light.name, &marker.color_pack);
+        Some(RayHit { t, normal, kind })
     });
     objects
         .chain(markers)
@@ -245,12 +242,12 @@ fn nearest(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>>
 
 /// The hit with an object that is in the same surface and earlier in the list, if there is one: the earlier object is
 /// visible.
-fn in_its_place<'a>(
+fn earlier_coincident_hit<'a>(
     scene: &'a Scene,
-    met: &RayHit<'a>,
+    hit: &RayHit<'a>,
     (origin, direction): (DVec3, DVec3),
 ) -> Option<RayHit<'a>> {
-    let HitKind::Object(later) = met.what else {
+    let HitKind::Object(later) = hit.kind else {
         return None;
     };
     let frame = CoordinateFrame::of(scene);
@@ -260,12 +257,12 @@ fn in_its_place<'a>(
     earlier.find_map(|pair| {
         let (t, normal) = meet(&scene.objects[pair.earlier].shape, origin, direction)?;
         // The ray may hit a mesh somewhere else than in the shared surface.
-        let across = (t - met.t).abs() * normal.dot(direction).abs();
-        if across > ONE_SURFACE * (met.t + (origin - centre).length()) {
+        let gap = (t - hit.t).abs() * normal.dot(direction).abs();
+        if gap > SAME_SURFACE_DISTANCE * (hit.t + (origin - centre).length()) {
             return None;
         }
-        let what = HitKind::Object(pair.earlier);
-        Some(RayHit { t, normal, what })
+        let kind = HitKind::Object(pair.earlier);
+        Some(RayHit { t, normal, kind })
     })
 }
 
@@ -273,8 +270,8 @@ fn in_its_place<'a>(
 fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option<String> {
     let mut objects = scene.visible_objects();
     let found = objects.find(|object| {
-        let met = meet(&object.shape, point, towards);
-        met.is_some_and(|(t, _)| t < distance * (1.0 - LEFT))
+        let hit = meet(&object.shape, point, towards);
+        hit.is_some_and(|(t, _)| t < distance * (1.0 - MIN_HIT_DISTANCE))
     });
     found.map(|object| object.name.clone())
 }
@@ -286,9 +283,9 @@ pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec
         Shape::Sphere(ball) => meet_ball(ball.center, ball.radius, origin, direction),
         Shape::Plane(plane) => meet_plane(plane.point, plane.normal, origin, direction),
         Shape::Disc(disc) => {
-            let met = meet_plane(disc.center, disc.normal, origin, direction)?;
-            let off = (origin + direction * met.0 - disc.center).length();
-            (off <= disc.radius).then_some(met)
+            let hit = meet_plane(disc.center, disc.normal, origin, direction)?;
+            let radial_distance = (origin + direction * hit.0 - disc.center).length();
+            (radial_distance <= disc.radius).then_some(hit)
         }
         Shape::Triangle(triangle) => meet_triangle(triangle.corners(), origin, direction),
         Shape::Mesh(mesh) => {
@@ -300,22 +297,22 @@ pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec
 }
 
 /// Least distance of a hit from `origin`, to allow for rounding.
-fn left(origin: DVec3) -> f64 {
-    LEFT * (1.0 + origin.abs().max_element())
+fn least_hit_distance(origin: DVec3) -> f64 {
+    MIN_HIT_DISTANCE * (1.0 + origin.abs().max_element())
 }
 
 fn meet_ball(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     let x = origin - center;
     let along = direction.dot(x);
-    let off = (x - direction * along).length_squared();
-    let root = (radius * radius - off).max(0.0).sqrt();
-    if off > radius * radius {
+    let squared_distance = (x - direction * along).length_squared();
+    let root = (radius * radius - squared_distance).max(0.0).sqrt();
+    if squared_distance > radius * radius {
         return None;
     }
-    let least = left(origin) + LEFT * radius;
+    let min_t = least_hit_distance(origin) + MIN_HIT_DISTANCE * radius;
     let t = [-along - root, -along + root]
         .into_iter()
-        .find(|t| *t > least)?;
+        .find(|t| *t > min_t)?;
     Some((t, (origin + direction * t - center) / radius))
 }
 
@@ -327,7 +324,7 @@ fn meet_plane(
 ) -> Option<(f64, DVec3)> {
     let normal = unit(normal)?;
     let t = (point - origin).dot(normal) / direction.dot(normal);
-    (t.is_finite() && t > left(origin)).then_some((t, normal))
+    (t.is_finite() && t > least_hit_distance(origin)).then_some((t, normal))
 }
 
 fn meet_triangle([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {

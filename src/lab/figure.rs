@@ -6,9 +6,9 @@ use super::stability::Map;
 use super::study::Study;
 
 /// Smallest width and height in pixels of one of several charts, so that its dots can be told apart.
-const TILE: (u32, u32) = (480, 280);
+const MIN_CHART_SIZE: (u32, u32) = (480, 280);
 /// Height in pixels of the legend that several charts share.
-const LEGEND: u32 = 120;
+const LEGEND_HEIGHT: u32 = 120;
 
 /// Appearance of a picture of charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,10 @@ impl PictureLook {
     /// The smallest size of a picture that shows this number of charts completely.
     pub fn least_size(charts: usize) -> (u32, u32) {
         let (columns, rows) = Self::grid_of(charts);
-        (columns * TILE.0, LEGEND + rows * TILE.1)
+        (
+            columns * MIN_CHART_SIZE.0,
+            LEGEND_HEIGHT + rows * MIN_CHART_SIZE.1,
+        )
     }
 }
 

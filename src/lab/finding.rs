@@ -7,7 +7,7 @@ use super::study::Study;
 use crate::words::{counted, short_number};
 
 /// Factor by which the default must be slower than another way that is as close, to count as beaten.
-const BEATEN: f64 = 1.1;
+const MIN_SLOWDOWN: f64 = 1.1;
 
 /// The result of a study of the scene called `name` about the plan's choice.
 pub fn finding(study: &Study, name: &str) -> String {
@@ -16,15 +16,15 @@ pub fn finding(study: &Study, name: &str) -> String {
     let (Some((ms, error)), true) = (own, study.progress() >= 1.0) else {
         return format!("{name}: time against error");
     };
-    let within = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
+    let cheapest = |error: f64| cheapest_within(&costs, error, f64::INFINITY);
     let quartiles = |index: usize| study.measurements[index].timing().map(|t| t.quartiles);
     // Compares its slow quartile with the fast one of the default, so that a busy machine does not decide.
     let is_doubtful = study.measurements[0].is_doubtful();
     let is_certain = |index: usize| match (quartiles(index), quartiles(0)) {
-        (Some((_, slow)), Some((fast, _))) => !is_doubtful && slow * BEATEN < fast,
+        (Some((_, slow)), Some((fast, _))) => !is_doubtful && slow * MIN_SLOWDOWN < fast,
         _ => false,
     };
-    let better = within(error * 1.01).filter(|&index| is_certain(index));
+    let better = cheapest(error * 1.01).filter(|&index| is_certain(index));
     if let Some(index) = better {
         let way = &study.measurements[index].candidate.name;
         let [cost, own] = [costs[index].0, ms].map(short_number);
@@ -39,7 +39,7 @@ pub fn finding(study: &Study, name: &str) -> String {
         );
     }
     let decibels = decibels(error);
-    if let Some(index) = within(EIGHT_BIT_FLOOR) {
+    if let Some(index) = cheapest(EIGHT_BIT_FLOOR) {
         let way = &study.measurements[index].candidate.name;
         let cost = short_number(costs[index].0);
         return format!(

@@ -21,7 +21,7 @@ const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
 const ROUNDS: usize = 3;
 
 /// Irrational step sizes along the axes of a cube that fill it evenly: powers of the root of x⁴ = x + 1.
-const STEPS: [f64; 3] = [0.819_172_513, 0.671_043_606, 0.549_700_477];
+const AXIS_STEPS: [f64; 3] = [0.819_172_513, 0.671_043_606, 0.549_700_477];
 
 /// The content of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -67,7 +67,7 @@ pub type Engine = fn(&Scene) -> Result<f64, String>;
 
 /// The engine that makes a picture.
 #[derive(Clone, Copy, Debug)]
-enum Maker {
+enum Renderer {
     Glint(Sampling),
     Other(Engine),
 }
@@ -76,8 +76,8 @@ enum Maker {
 #[derive(Debug)]
 pub struct Growth {
     side: u32,
-    most: u32,
-    makers: Vec<(Way, Maker)>,
+    max_primitives: u32,
+    renderers: Vec<(Way, Renderer)>,
     /// The results so far.
     pub costs: Vec<Cost>,
     /// Why engines were left out.
@@ -85,14 +85,14 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Makes pictures of `side` × `side` pixels, of scenes with at most `most` primitives.
-    pub fn new(side: u32, most: u32) -> Self {
+    /// Makes pictures of `side` × `side` pixels, of scenes with at most `max_primitives` primitives.
+    pub fn new(side: u32, max_primitives: u32) -> Self {
         Self {
             side,
-            most,
-            makers: vec![
-                (Way::Plain, Maker::Glint(Sampling::Centres)),
-                (Way::Clean, Maker::Glint(Sampling::ADAPTIVE)),
+            max_primitives,
+            renderers: vec![
+                (Way::Plain, Renderer::Glint(Sampling::Centres)),
+                (Way::Clean, Renderer::Glint(Sampling::ADAPTIVE)),
             ],
             costs: Vec::new(),
             obstacles: Vec::new(),
@@ -106,7 +106,7 @@ impl Growth {
 
     /// Adds another engine to the comparison.
     pub fn with(mut self, way: Way, engine: Engine) -> Self {
-        self.makers.push((way, Maker::Other(engine)));
+        self.renderers.push((way, Renderer::Other(engine)));
         self
     }
 
@@ -116,34 +116,36 @@ impl Growth {
     }
 
     /// All pictures in the order of measurement. Other engines come last; one that fails is left out.
-    fn cases(&self) -> impl Iterator<Item = (&(Way, Maker), Crowd, u32)> {
-        let crowds = |made| [(made, Crowd::Mesh), (made, Crowd::Balls)];
-        self.makers
+    fn cases(&self) -> impl Iterator<Item = (&(Way, Renderer), Crowd, u32)> {
+        let crowds = |renderer| [(renderer, Crowd::Mesh), (renderer, Crowd::Balls)];
+        self.renderers
             .iter()
             .flat_map(crowds)
-            .flat_map(|(made, crowd)| {
-                let most = crowd.most().min(self.most);
-                let counts = COUNTS.into_iter().filter(move |&count| count <= most);
-                counts.map(move |count| (made, crowd, count))
+            .flat_map(|(renderer, crowd)| {
+                let max_primitives = crowd.max_primitives().min(self.max_primitives);
+                let counts = COUNTS
+                    .into_iter()
+                    .filter(move |&count| count <= max_primitives);
+                counts.map(move |count| (renderer, crowd, count))
             })
     }
 
     /// Measures the next picture, or leaves out an engine that fails. Returns whether there was one to measure.
     pub fn step(&mut self) -> bool {
-        let Some((&(way, maker), crowd, count)) = self.cases().nth(self.costs.len()) else {
+        let Some((&(way, renderer), crowd, count)) = self.cases().nth(self.costs.len()) else {
             return false;
         };
         let mut scene = crowd.scene(count);
         (scene.render.width, scene.render.height) = (self.side, self.side);
-        let taken = match maker {
-            Maker::Glint(sampling) => Ok(own(&scene, sampling)),
-            Maker::Other(draw) => draw(&scene).map(|ms| (ms, None)),
+        let timing = match renderer {
+            Renderer::Glint(sampling) => Ok(time_glint(&scene, sampling)),
+            Renderer::Other(draw) => draw(&scene).map(|ms| (ms, None)),
         };
-        let (ms, plan_ms) = match taken {
-            Ok(taken) => taken,
+        let (ms, plan_ms) = match timing {
+            Ok(timing) => timing,
             Err(obstacle) => {
                 self.obstacles.push(obstacle);
-                self.makers.retain(|(made, _)| *made != way);
+                self.renderers.retain(|(other, _)| *other != way);
                 self.costs.retain(|cost| cost.way != way);
                 return true;
             }
@@ -194,7 +196,7 @@ impl Cost {
 
 impl Crowd {
     /// Most primitives that are measured.
-    fn most(self) -> u32 {
+    fn max_primitives(self) -> u32 {
         match self {
             Self::Mesh => 1_000_000,
             // Each ball is an object with a name: with more of them, that overhead would dominate tracing.
@@ -212,7 +214,7 @@ impl Crowd {
 }
 
 /// Milliseconds of the fastest run, and of planning.
-fn own(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
+fn time_glint(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
     let request = RenderRequest {
         sampling,
         ..RenderRequest::still(scene)
@@ -277,15 +279,16 @@ fn stage() -> Scene {
 fn mesh(faces: u32) -> Scene {
     let rings = (f64::from(faces) / 4.0).sqrt().round().max(2.0) as u32;
     let columns = 2 * rings;
-    let place = |ring: u32, column: u32| {
-        let down = f64::from(ring) / f64::from(rings) * PI;
-        let around = f64::from(column) / f64::from(columns) * TAU;
-        let radius = 42.0 + 4.0 * (6.0 * around).sin() * (5.0 * down).sin();
-        let (x, z) = (around.cos() * down.sin(), around.sin() * down.sin());
-        DVec3::new(x, down.cos(), z) * radius
+    let point_at = |ring: u32, column: u32| {
+        let polar = f64::from(ring) / f64::from(rings) * PI;
+        let azimuth = f64::from(column) / f64::from(columns) * TAU;
+        let radius = 42.0 + 4.0 * (6.0 * azimuth).sin() * (5.0 * polar).sin();
+        let (x, z) = (azimuth.cos() * polar.sin(), azimuth.sin() * polar.sin());
+        DVec3::new(x, polar.cos(), z) * radius
     };
-    let mut points = vec![place(0, 0), place(rings, 0)];
-    points.extend((1..rings).flat_map(|ring| (0..columns).map(move |column| place(ring, column))));
+    let mut points = vec![point_at(0, 0), point_at(rings, 0)];
+    points
+        .extend((1..rings).flat_map(|ring| (0..columns).map(move |column| point_at(ring, column))));
     let number = |ring: u32, column: u32| match ring {
         0 => 0,
         _ if ring == rings => 1,
@@ -321,7 +324,7 @@ fn balls(count: u32) -> Scene {
     let radius = 60.0 / f64::from(count).sqrt();
     for number in 0..count {
         // Additive recurrence with a different irrational step for each axis.
-        let share = |axis: usize| (f64::from(number) * STEPS[axis]).fract();
+        let share = |axis: usize| (f64::from(number) * AXIS_STEPS[axis]).fract();
         let center = DVec3::new(
             (share(0) - 0.5) * 150.0,
             radius + share(1) * 90.0,

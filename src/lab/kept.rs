@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::candidates::{OWN, POVRAY};
+use super::candidates::{OWN_SETTINGS, POVRAY};
 use super::measure::ErrorMetrics;
 use super::study::{REFERENCE_SAMPLES, Reference, Study};
 use crate::export::{fingerprint, save_image, write_text};
@@ -14,7 +14,7 @@ use crate::image::{Film, Format, Image};
 use crate::scene::{Render, Scene, read_text};
 
 /// Most studies that are stored, each in two files; older ones are removed.
-const MOST: usize = 24;
+const MAX_STUDIES: usize = 24;
 
 /// A study as it is stored, except its pictures.
 #[derive(Serialize, Deserialize)]
@@ -46,8 +46,8 @@ struct KeptDot {
 
 /// The files for the study of a scene. Their names do not depend on the methods that the scene chooses, because those
 /// are what is compared.
-fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
-    let bare = Scene {
+fn file_paths(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
+    let neutral = Scene {
         render: Render {
             reflection_limit: scene.render.reflection_limit,
             width: scene.render.width,
@@ -56,15 +56,15 @@ fn place(folder: &Path, scene: &Scene) -> Option<(PathBuf, PathBuf)> {
         },
         ..scene.clone()
     };
-    let name = fingerprint(&bare, Format::Png).ok()?.to_hex();
+    let name = fingerprint(&neutral, Format::Png).ok()?.to_hex();
     let file = |ending| folder.join(format!("{}.{ending}", &name[..32]));
     Some((file("ron"), file("png")))
 }
 
 /// The scene's own settings, if they were measured as a separate way. They may change later.
-fn own_of(study: &Study) -> Option<Render> {
+fn own_settings_of(study: &Study) -> Option<Render> {
     let mut dots = study.measurements.iter();
-    let own = dots.find(|dot| dot.candidate.name == OWN)?;
+    let own = dots.find(|dot| dot.candidate.name == OWN_SETTINGS)?;
     Some(own.candidate.render.clone())
 }
 
@@ -75,13 +75,13 @@ pub fn keep(study: &Study, machine: &str, folder: &Path) {
 }
 
 fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
-    let (figures, pictures) = place(folder, study.scene())?;
+    let (figures, pictures) = file_paths(folder, study.scene())?;
     let reference = study.reference.as_ref()?;
-    let mut all = Image::clone(&reference.picture);
+    let mut stacked = Image::clone(&reference.picture);
     let mut dots = Vec::new();
     for dot in &study.measurements {
         let (metrics, picture) = (dot.metrics?, dot.picture.as_ref()?);
-        all.pixels.extend(&picture.pixels);
+        stacked.pixels.extend(&picture.pixels);
         dots.push(KeptDot {
             name: dot.candidate.name.clone(),
             rmse: metrics.rmse,
@@ -92,7 +92,7 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
             lanes: dot.lanes.clone(),
         });
     }
-    all.height *= 1 + dots.len();
+    stacked.height *= 1 + dots.len();
     let (width, height) = study.size();
     let kept = KeptStudy {
         machine: machine.to_owned(),
@@ -100,29 +100,31 @@ fn try_keep(study: &Study, machine: &str, folder: &Path) -> Option<()> {
         height,
         reference_samples: REFERENCE_SAMPLES,
         reference_rmse: reference.rmse,
-        own: own_of(study),
+        own: own_settings_of(study),
         dots,
     };
     make_folder(folder).ok()?;
-    save_image(&Film::Levels(all), &pictures).ok()?;
+    save_image(&Film::Levels(stacked), &pictures).ok()?;
     write_text(&figures, &ron::to_string(&kept).ok()?).ok()?;
-    remove_oldest(folder, 2 * MOST);
+    remove_oldest(folder, 2 * MAX_STUDIES);
     Some(())
 }
 
 /// Loads the study of this scene on this machine; `None` if there is none, or if other ways were measured.
 pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Option<Study> {
-    let (figures, pictures) = place(folder, scene)?;
+    let (figures, pictures) = file_paths(folder, scene)?;
     let kept: KeptStudy = ron::from_str(&read_text(&figures).ok()?).ok()?;
     let mut study = Study::of_side(Arc::clone(scene), side);
     if kept.dots.last().is_some_and(|dot| dot.name == POVRAY) {
         study = study.with_povray();
     }
-    let is_own_same = own_of(&study) == kept.own;
-    let counts = |name: &str| is_own_same || name != OWN;
-    study.measurements.retain(|dot| counts(&dot.candidate.name));
+    let has_same_settings = own_settings_of(&study) == kept.own;
+    let is_counted = |name: &str| has_same_settings || name != OWN_SETTINGS;
+    study
+        .measurements
+        .retain(|dot| is_counted(&dot.candidate.name));
     let names = kept.dots.iter().map(|dot| &dot.name);
-    let names = names.filter(|name| counts(name));
+    let names = names.filter(|name| is_counted(name));
     let is_same = names.eq(study.measurements.iter().map(|dot| &dot.candidate.name))
         && kept.machine == machine
         && kept.reference_samples == REFERENCE_SAMPLES
@@ -130,9 +132,9 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
     if !is_same {
         return None;
     }
-    let all = Image::from(&image::open(&pictures).ok()?.to_rgba8());
+    let stacked = Image::from(&image::open(&pictures).ok()?.to_rgba8());
     let (width, height) = (kept.width as usize, kept.height as usize);
-    let mut images = all.pixels.chunks_exact(width * height).map(|pixels| {
+    let mut images = stacked.pixels.chunks_exact(width * height).map(|pixels| {
         Arc::new(Image {
             width,
             height,
@@ -147,7 +149,7 @@ pub fn kept(scene: &Arc<Scene>, side: u32, machine: &str, folder: &Path) -> Opti
         return None;
     }
     let figures = kept.dots.into_iter().zip(images);
-    let figures = figures.filter(|(dot, _)| counts(&dot.name));
+    let figures = figures.filter(|(dot, _)| is_counted(&dot.name));
     for (dot, (kept, picture)) in study.measurements.iter_mut().zip(figures) {
         dot.metrics = Some(ErrorMetrics {
             rmse: kept.rmse,
@@ -202,13 +204,13 @@ mod tests {
         while study.step(&RenderControl::default()) {}
         keep(&study, "here", &folder);
         let again = kept(&own, 16, "here", &folder).expect("it was kept");
-        assert!(own_of(&again).is_some());
+        assert!(own_settings_of(&again).is_some());
         assert_eq!(again.costs(), study.costs());
         assert_eq!(pictures(&again), pictures(&study));
         let without = kept(&scene, 16, "here", &folder).expect("it was kept");
-        assert!(own_of(&without).is_none());
+        assert!(own_settings_of(&without).is_none());
         assert_eq!(without.progress(), 1.0);
-        let (_, pictures) = place(&folder, &scene).expect("files");
+        let (_, pictures) = file_paths(&folder, &scene).expect("files");
         std::fs::write(pictures, "no picture").expect("written");
         assert!(kept(&scene, 16, "here", &folder).is_none());
     }

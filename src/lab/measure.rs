@@ -8,7 +8,7 @@ use crate::trace::{Pass, Rays, RenderControl, Tracer};
 pub const EIGHT_BIT_FLOOR: f64 = 1.0 / (255.0 * 3.464_101_615_137_754_4);
 
 /// Error of a channel above which it is visible.
-const VISIBLE: f32 = 4.0 / 255.0;
+const VISIBLE_ERROR: f32 = 4.0 / 255.0;
 
 /// The error of a picture over all channels of all pixels; colours are linear, 0–1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,12 +39,12 @@ pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetric
     for (a, b) in picture.iter().zip(reference) {
         let mut worst = 0.0_f32;
         for channel in 0..3 {
-            let off = (a[channel] - b[channel]).abs();
-            squares += f64::from(off) * f64::from(off);
-            worst = worst.max(off);
+            let error = (a[channel] - b[channel]).abs();
+            squares += f64::from(error) * f64::from(error);
+            worst = worst.max(error);
         }
         max = max.max(worst);
-        visible += usize::from(worst > VISIBLE);
+        visible += usize::from(worst > VISIBLE_ERROR);
     }
     let pixels = reference.len().max(1) as f64;
     ErrorMetrics {
@@ -78,7 +78,7 @@ pub fn scaled(
     if (width, height) == to {
         return from.to_vec();
     }
-    let place = |at: usize, count: usize, of: usize| {
+    let neighbours = |at: usize, count: usize, of: usize| {
         let at = (at as f32 + 0.5) * of as f32 / count as f32 - 0.5;
         let at = at.clamp(0.0, (of - 1) as f32);
         let first = at.floor() as usize;
@@ -93,9 +93,9 @@ pub fn scaled(
     };
     let mut pixels = Vec::with_capacity(to.0 * to.1);
     for row in 0..to.1 {
-        let (top, bottom, down) = place(row, to.1, height);
+        let (top, bottom, down) = neighbours(row, to.1, height);
         for column in 0..to.0 {
-            let (left, right, across) = place(column, to.0, width);
+            let (left, right, across) = neighbours(column, to.0, width);
             let at = |x: usize, y: usize| from[y * width + x];
             let upper = mix(at(left, top), at(right, top), across);
             let lower = mix(at(left, bottom), at(right, bottom), across);

@@ -1,23 +1,23 @@
 //! The Pareto front of cost and error.
 
 /// Share to which the error must fall to justify a higher cost: smaller gains would vanish in the next measurement.
-const WORTH: f64 = 0.99;
+const MAX_ERROR_RATIO: f64 = 0.99;
 
 /// Returns the indices of the dots (cost, error), by cost, whose error is clearly less than that of every cheaper
 /// one. Dots with a number that is not finite are never on the front.
 pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
-    let finite =
+    let has_finite_cost =
         |&index: &usize| measurements[index].0.is_finite() && measurements[index].1.is_finite();
-    let mut indices: Vec<usize> = (0..measurements.len()).filter(finite).collect();
+    let mut indices: Vec<usize> = (0..measurements.len()).filter(has_finite_cost).collect();
     indices.sort_by(|&a, &b| {
         let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
         by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
     });
-    let mut least = f64::INFINITY;
+    let mut least_error = f64::INFINITY;
     indices.retain(|&index| {
-        let is_better = measurements[index].1 < least * WORTH;
+        let is_better = measurements[index].1 < least_error * MAX_ERROR_RATIO;
         if is_better {
-            least = measurements[index].1;
+            least_error = measurements[index].1;
         }
         is_better
     });
@@ -37,8 +37,8 @@ pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Op
 /// Returns the index of the dot (cost, error) with the least error among those of at most this cost:
 /// [`cheapest_within`] with the axes swapped.
 pub fn closest_within(measurements: &[(f64, f64)], cost: f64) -> Option<usize> {
-    let turned: Vec<(f64, f64)> = measurements.iter().map(|&(c, e)| (e, c)).collect();
-    cheapest_within(&turned, cost, f64::INFINITY)
+    let swapped: Vec<(f64, f64)> = measurements.iter().map(|&(c, e)| (e, c)).collect();
+    cheapest_within(&swapped, cost, f64::INFINITY)
 }
 
 #[cfg(test)]
@@ -75,7 +75,7 @@ mod tests {
         fn what_is_not_on_the_front_is_beaten(measurements in prop::collection::vec((0.0..9.0_f64, 0.0..9.0_f64), 1..40)) {
             let front = front(&measurements);
             for (index, dot) in measurements.iter().enumerate() {
-                let beats = |&other: &usize| measurements[other].0 <= dot.0 && measurements[other].1 * WORTH <= dot.1;
+                let beats = |&other: &usize| measurements[other].0 <= dot.0 && measurements[other].1 * MAX_ERROR_RATIO <= dot.1;
                 let beaten = front.iter().filter(|&&other| other != index).any(beats);
                 prop_assert!(front.contains(&index) || beaten);
             }

@@ -15,12 +15,12 @@ use crate::trace::{RenderControl, Tracer};
 /// with one of an even grid.
 const REFERENCE_GRID: u32 = 23;
 /// Rows per strip.
-const STRIP: usize = 8;
+const STRIP_ROWS: usize = 8;
 /// Number of pixels, roughly, that are measured: few enough to take a second or so, many enough to cover the content
 /// of the picture.
-const PIXELS: usize = 1 << 17;
+const MEASURED_PIXELS: usize = 1 << 17;
 /// Least number of strips.
-const FEWEST: usize = 4;
+const MIN_STRIPS: usize = 4;
 
 /// The limit that a picture must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +85,7 @@ pub fn choose(
     let mut strips = Strips::new(scene, request, planner, control);
     let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
     // Meshes are prepared once, for all samplings, but whoever traces the picture has to wait for that again.
-    let ready = first.planned;
+    let planned_with_meshes = first.planned;
     let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();
     for sampling in samplings() {
         // Grids come in order of size: after one that is close enough, or too slow, all others take longer.
@@ -102,7 +102,7 @@ pub fn choose(
         let (light, first) = strips.trace(sampling)?;
         let (_, second) = strips.trace(sampling)?;
         // The faster of two runs counts, because disturbances only make a run slower.
-        let planned = first.planned.min(second.planned).max(ready);
+        let planned = first.planned.min(second.planned).max(planned_with_meshes);
         let time = planned + first.traced.min(second.traced);
         measured.push((sampling, (time, difference(&light, &reference).rmse)));
     }
@@ -112,25 +112,25 @@ pub fn choose(
 /// Chooses among the measured samplings (time in s, error); `None` if there are none.
 fn pick(goal: Goal, measured: &[(Sampling, (f64, f64))]) -> Option<Choice> {
     let costs: Vec<(f64, f64)> = measured.iter().map(|(_, figures)| *figures).collect();
-    let all = f64::INFINITY;
-    let (met, nearest) = match goal {
+    let unbounded = f64::INFINITY;
+    let (within_goal, nearest) = match goal {
         Goal::Within(error) => (
-            cheapest_within(&costs, error, all),
-            closest_within(&costs, all),
+            cheapest_within(&costs, error, unbounded),
+            closest_within(&costs, unbounded),
         ),
         Goal::Budget(time) => (
             closest_within(&costs, time.as_secs_f64()),
-            cheapest_within(&costs, all, all),
+            cheapest_within(&costs, unbounded, unbounded),
         ),
     };
-    let (sampling, (time, rmse)) = measured[met.or(nearest)?];
+    let (sampling, (time, rmse)) = measured[within_goal.or(nearest)?];
     Some(Choice {
         goal,
         sampling,
         rmse,
         time: Duration::from_secs_f64(time),
         tried: measured.len(),
-        is_met: met.is_some(),
+        is_met: within_goal.is_some(),
     })
 }
 
@@ -147,7 +147,7 @@ struct Strips<'a> {
     planner: &'a mut Planner,
     control: &'a RenderControl,
     /// The first row of each strip.
-    firsts: Vec<usize>,
+    first_rows: Vec<usize>,
     rows: usize,
 }
 
@@ -159,26 +159,26 @@ impl<'a> Strips<'a> {
         control: &'a RenderControl,
     ) -> Self {
         let (width, height) = (request.width as usize, request.height as usize);
-        let count = (PIXELS / (STRIP * width)).max(FEWEST);
-        let (firsts, rows) = if count * STRIP >= height {
+        let count = (MEASURED_PIXELS / (STRIP_ROWS * width)).max(MIN_STRIPS);
+        let (first_rows, rows) = if count * STRIP_ROWS >= height {
             (vec![0], height)
         } else {
-            let first = |strip: usize| (2 * strip + 1) * (height - STRIP) / (2 * count);
-            ((0..count).map(first).collect(), STRIP)
+            let first = |strip: usize| (2 * strip + 1) * (height - STRIP_ROWS) / (2 * count);
+            ((0..count).map(first).collect(), STRIP_ROWS)
         };
         Self {
             scene,
             request,
             planner,
             control,
-            firsts,
+            first_rows,
             rows,
         }
     }
 
     /// The number of rows of the whole picture, relative to that of the strips.
-    fn share_of_all(&self) -> f64 {
-        f64::from(self.request.height) / (self.rows * self.firsts.len()) as f64
+    fn rows_ratio(&self) -> f64 {
+        f64::from(self.request.height) / (self.rows * self.first_rows.len()) as f64
     }
 
     /// Traces the strips, and estimates the time of the whole picture. Planning counts once, whatever the number of
@@ -192,12 +192,12 @@ impl<'a> Strips<'a> {
         let tracer = Tracer::planned(self.scene, &request, self.planner);
         let planned = start.elapsed().as_secs_f64();
         let strip = self.rows * self.request.width as usize;
-        let mut light = vec![[0.0; 3]; strip * self.firsts.len()];
-        for (strip, first) in light.chunks_exact_mut(strip).zip(&self.firsts) {
+        let mut light = vec![[0.0; 3]; strip * self.first_rows.len()];
+        for (strip, first) in light.chunks_exact_mut(strip).zip(&self.first_rows) {
             tracer.rows(strip, *first, self.control)?;
         }
         let traced = start.elapsed().as_secs_f64() - planned;
-        let traced = traced * self.share_of_all();
+        let traced = traced * self.rows_ratio();
         Some((light, Seconds { planned, traced }))
     }
 }

@@ -57,7 +57,7 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
     }
     // The fastest split counts as the time alone: otherwise measurement noise could make the efficiency exceed 1.
     let sums = measured.iter().map(|(_, times)| times.iter().sum());
-    let alone = milliseconds(planning + sums.min().unwrap_or(Duration::ZERO));
+    let ms_alone = milliseconds(planning + sums.min().unwrap_or(Duration::ZERO));
     let picture = |(workers, times): (usize, Vec<Duration>)| {
         let ms = milliseconds(planning + makespan(&times, workers));
         SharedPicture {
@@ -65,7 +65,7 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
             workers,
             pieces: times.len(),
             ms,
-            efficiency: alone / (ms * workers as f64),
+            efficiency: ms_alone / (ms * workers as f64),
         }
     };
     measured.into_iter().map(picture).collect()
@@ -87,26 +87,26 @@ fn milliseconds(time: Duration) -> f64 {
 /// half and putting the other aside, and idle workers steal the range that another one put aside first, as in rayon
 /// (Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999).
 fn makespan(times: &[Duration], workers: usize) -> Duration {
-    let mut aside: Vec<VecDeque<Range<usize>>> = vec![VecDeque::new(); workers];
-    aside[0].push_back(0..times.len());
-    let mut free: BinaryHeap<Reverse<(Duration, usize)>> = (0..workers)
+    let mut queues: Vec<VecDeque<Range<usize>>> = vec![VecDeque::new(); workers];
+    queues[0].push_back(0..times.len());
+    let mut idle: BinaryHeap<Reverse<(Duration, usize)>> = (0..workers)
         .map(|worker| Reverse((Duration::ZERO, worker)))
         .collect();
     let mut last = Duration::ZERO;
-    while let Some(Reverse((now, worker))) = free.pop() {
-        let own = aside[worker].pop_back();
-        let victim = (0..workers).max_by_key(|&other| aside[other].front().map_or(0, Range::len));
-        let Some(mut range) = own.or_else(|| aside[victim?].pop_front()) else {
+    while let Some(Reverse((now, worker))) = idle.pop() {
+        let own_range = queues[worker].pop_back();
+        let victim = (0..workers).max_by_key(|&other| queues[other].front().map_or(0, Range::len));
+        let Some(mut range) = own_range.or_else(|| queues[victim?].pop_front()) else {
             continue;
         };
         while range.len() > 1 {
             let middle = range.start + range.len() / 2;
-            aside[worker].push_back(middle..range.end);
+            queues[worker].push_back(middle..range.end);
             range.end = middle;
         }
         let done = now + range.map(|piece| times[piece]).sum::<Duration>();
         last = last.max(done);
-        free.push(Reverse((done, worker)));
+        idle.push(Reverse((done, worker)));
     }
     last
 }

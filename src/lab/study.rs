@@ -20,16 +20,16 @@ pub const REFERENCE_SAMPLES: u32 = REFERENCE_GRIDS[0].pow(2) + REFERENCE_GRIDS[1
 /// Number of pieces in which each of the two pictures is traced; between them, more urgent work can go first.
 const REFERENCE_PIECES: usize = 32;
 /// Weight of the reference in the progress, in timed runs.
-const REFERENCE_WORTH: f64 = 100.0;
+const REFERENCE_WEIGHT: f64 = 100.0;
 /// Timed runs of each candidate, without the one that warms up.
 const ROUNDS: usize = 9;
 /// Time of the first run above which a candidate is run less often.
-const SLOW: Duration = Duration::from_millis(250);
+const SLOW_RUN: Duration = Duration::from_millis(250);
 /// Timed runs of such a candidate.
 const SLOW_ROUNDS: usize = 3;
 
 /// Spread above which a time is doubtful.
-const DOUBTFUL: f64 = 0.2;
+const MAX_SPREAD: f64 = 0.2;
 
 /// A way of tracing, and its measurements.
 #[derive(Clone, Debug)]
@@ -143,7 +143,7 @@ impl Study {
     /// Returns `false` if all is done. A piece that `control` stopped is repeated in the next call.
     pub fn step(&mut self, control: &RenderControl) -> bool {
         let start = Instant::now();
-        let is_more = if self.reference.is_none() {
+        let has_more = if self.reference.is_none() {
             self.find_reference(control);
             true
         } else if let Some(index) = self
@@ -151,18 +151,18 @@ impl Study {
             .iter()
             .position(|dot| dot.metrics.is_none())
         {
-            self.look_at(index, control);
+            self.measure_error(index, control);
             true
         } else {
             self.time_next(control)
         };
         self.spent += start.elapsed();
-        is_more
+        has_more
     }
 
     /// Share of the work that is done, 0–1, by the number of pieces.
     pub fn progress(&self) -> f64 {
-        let seen = self
+        let measured = self
             .measurements
             .iter()
             .filter(|dot| dot.metrics.is_some())
@@ -173,11 +173,11 @@ impl Study {
             None => self.references.iter().map(|light| light.len()).sum(),
         };
         // References take as long as a considerable part of the rest.
-        let reference = REFERENCE_WORTH * traced as f64 / (2 * pixels) as f64;
+        let reference = REFERENCE_WEIGHT * traced as f64 / (2 * pixels) as f64;
         let wanted: usize = self.measurements.iter().map(Measurement::rounds).sum();
         let runs: usize = self.measurements.iter().map(|dot| dot.times.len()).sum();
-        let (done, all) = (seen + runs, self.measurements.len() + wanted);
-        (reference + done as f64) / (REFERENCE_WORTH + all as f64)
+        let (done, total) = (measured + runs, self.measurements.len() + wanted);
+        (reference + done as f64) / (REFERENCE_WEIGHT + total as f64)
     }
 
     /// Estimated time for the rest; `None` at the start.
@@ -216,10 +216,10 @@ impl Study {
         }
     }
 
-    fn look_at(&mut self, index: usize, control: &RenderControl) {
+    fn measure_error(&mut self, index: usize, control: &RenderControl) {
         let candidate = &self.measurements[index].candidate;
         if candidate.family == Family::Referee {
-            match self.ask_povray(index, control) {
+            match self.measure_povray(index, control) {
                 Ok(()) | Err(PovrayError::Stopped) => {}
                 Err(error) => {
                     self.obstacle = Some(error.to_string());
@@ -243,7 +243,7 @@ impl Study {
     }
 
     /// Draws the picture with POV-Ray, and records its first time.
-    fn ask_povray(&mut self, index: usize, control: &RenderControl) -> Result<(), PovrayError> {
+    fn measure_povray(&mut self, index: usize, control: &RenderControl) -> Result<(), PovrayError> {
         let scene = self.measurements[index].candidate.scene(&self.scene);
         let drawn = by_povray(&scene, Threads::current(), control)?;
         let light = drawn.picture.to_linear().pixels;
@@ -259,11 +259,11 @@ impl Study {
     /// Times one run of the candidate that has had the fewest, so that all take turns and a temporary disturbance of
     /// the machine affects them all. The other engine goes first, because it disturbs what runs after it.
     fn time_next(&mut self, control: &RenderControl) -> bool {
-        let waiting = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
+        let needs_runs = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
         let Some(dot) = self
             .measurements
             .iter_mut()
-            .filter(waiting)
+            .filter(needs_runs)
             .min_by_key(|dot| (dot.candidate.family != Family::Referee, dot.times.len()))
         else {
             return false;
@@ -330,7 +330,7 @@ impl Measurement {
 
     /// The number of timed runs that it needs.
     fn rounds(&self) -> usize {
-        let slow = SLOW.as_secs_f64() * 1e3;
+        let slow = SLOW_RUN.as_secs_f64() * 1e3;
         if self.times.first().is_some_and(|&time| time > slow) {
             SLOW_ROUNDS
         } else {
@@ -340,7 +340,8 @@ impl Measurement {
 
     /// Returns whether its runs differ too much to trust the median.
     pub fn is_doubtful(&self) -> bool {
-        self.timing().is_some_and(|timing| timing.spread > DOUBTFUL)
+        self.timing()
+            .is_some_and(|timing| timing.spread > MAX_SPREAD)
     }
 
     /// Statistics of its runs; `None` before the first.
@@ -350,9 +351,9 @@ impl Measurement {
         // Linear interpolation between neighbours (Hyndman and Fan, "Sample quantiles in statistical packages", The
         // American Statistician 50(4), 1996, definition 7).
         let at = |share: f64| {
-            let place = times.len().checked_sub(1)? as f64 * share;
-            let (below, above) = (times[place.floor() as usize], times[place.ceil() as usize]);
-            Some(below + (above - below) * place.fract())
+            let rank = times.len().checked_sub(1)? as f64 * share;
+            let (below, above) = (times[rank.floor() as usize], times[rank.ceil() as usize]);
+            Some(below + (above - below) * rank.fract())
         };
         let (median, low, high) = (at(0.5)?, at(0.25)?, at(0.75)?);
         Some(Timing {

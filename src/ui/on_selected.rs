@@ -33,7 +33,9 @@ pub fn objects_to_join(editor: &Editor) -> Vec<usize> {
 /// Adds to the selection everything with the color pack of the last selected item, which may be that pack itself.
 pub fn with_same_pack(scene: &Scene, selected: &Selection) -> Selection {
     let pack = selected.item().and_then(|item| item.color_pack(scene));
-    let wearing = pack.into_iter().flat_map(|pack| Item::wearing(scene, pack));
+    let wearing = pack
+        .into_iter()
+        .flat_map(|pack| Item::users_of_pack(scene, pack));
     let others = wearing.filter(|other| !selected.has(*other));
     // The previous selection comes last, so that the inspector keeps showing its last item.
     Selection::all(others.chain(selected.items().iter().copied()))

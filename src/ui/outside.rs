@@ -255,7 +255,7 @@ impl Guard {
         let wake = move || ctx.request_repaint();
         Self {
             files,
-            alarm: Background::look_out("glint-watch", CHECK_INTERVAL, has_change, wake),
+            alarm: Background::poll_until("glint-watch", CHECK_INTERVAL, has_change, wake),
             _alive: alive,
         }
     }

@@ -254,7 +254,7 @@ impl App {
         if self.editor.changes(Action::Edit(paste)) {
             self.report_unseen("The pasted selection");
             if !is_whole {
-                self.editor.tell_missing_meshes();
+                self.editor.report_missing_meshes();
             }
         }
     }

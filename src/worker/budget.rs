@@ -5,23 +5,23 @@ use std::time::Duration;
 /// Time that a picture may take during a drag: 30 pictures per second.
 pub const BUDGET: Duration = Duration::from_millis(33);
 /// Least number of pixels along the longer side of a first picture: better late than unreadable.
-const FLOOR_PIXELS: usize = 128;
+const MIN_PIXELS: usize = 128;
 /// Largest step, for pictures of any size.
-const COARSEST: usize = 16;
+const MAX_STEP: usize = 16;
 /// Consecutive pictures with time to spare after which the step becomes finer.
 const PATIENCE: u32 = 3;
 /// Share of the budget that a finer picture must fit into, so that a cost at the border between two steps does not
 /// cause flicker between them.
 const SPARE_SHARE: f64 = 0.75;
 /// Weight of the newest measurement in the moving average.
-const NEWEST: f64 = 0.35;
+const NEWEST_WEIGHT: f64 = 0.35;
 
 /// Measures the cost of a pixel and chooses steps by it.
 #[derive(Clone, Debug)]
 pub struct Budget {
     nanos_per_pixel: f64,
     step: usize,
-    spare: u32,
+    spare_streak: u32,
 }
 
 impl Budget {
@@ -30,24 +30,24 @@ impl Budget {
         Self {
             nanos_per_pixel: 0.0,
             step: 8,
-            spare: 0,
+            spare_streak: 0,
         }
     }
 
     /// Chooses the step of the first pass over a picture of this size that may take this time.
     pub fn choose(&mut self, width: usize, height: usize, time: Duration) -> usize {
-        let coarsest = (width.max(height) / FLOOR_PIXELS).clamp(1, COARSEST);
-        let floor = 1 << coarsest.ilog2();
-        let needed = self.finest_step((width, height), time).min(floor);
-        self.step = self.step.max(needed).min(floor);
+        let max_ratio = (width.max(height) / MIN_PIXELS).clamp(1, MAX_STEP);
+        let max_step = 1 << max_ratio.ilog2();
+        let needed = self.finest_step((width, height), time).min(max_step);
+        self.step = self.step.max(needed).min(max_step);
         if self.finest_step((width, height), time.mul_f64(SPARE_SHARE)) < self.step {
-            self.spare += 1;
+            self.spare_streak += 1;
         } else {
-            self.spare = 0;
+            self.spare_streak = 0;
         }
-        if self.spare >= PATIENCE {
+        if self.spare_streak >= PATIENCE {
             self.step /= 2;
-            self.spare = 0;
+            self.spare_streak = 0;
         }
         self.step
     }
@@ -57,7 +57,7 @@ impl Budget {
         let nanos = time.as_nanos() as f64 / pixels.max(1) as f64;
         self.nanos_per_pixel = match self.nanos_per_pixel {
             0.0 => nanos,
-            old => old + (nanos - old) * NEWEST,
+            old => old + (nanos - old) * NEWEST_WEIGHT,
         };
     }
 
@@ -68,7 +68,7 @@ impl Budget {
             let pixels = (width.div_ceil(*step) * height.div_ceil(*step)) as f64;
             pixels * self.nanos_per_pixel <= budget
         };
-        [1, 2, 4, 8].into_iter().find(fits).unwrap_or(COARSEST)
+        [1, 2, 4, 8].into_iter().find(fits).unwrap_or(MAX_STEP)
     }
 }
 
@@ -104,7 +104,7 @@ mod tests {
             1,
             "a small picture has nothing to save"
         );
-        assert_eq!(budget.choose(4096, 100, BUDGET), COARSEST);
+        assert_eq!(budget.choose(4096, 100, BUDGET), MAX_STEP);
     }
 
     #[test]

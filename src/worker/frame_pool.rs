@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::image::Image;
 
 /// Most pictures in the pool: one on screen, one on its way there, one being traced.
-const MOST: usize = 3;
+const MAX_POOL_SIZE: usize = 3;
 
 /// The most recent live pictures.
 #[derive(Debug, Default)]
@@ -29,7 +29,7 @@ impl FramePool {
     /// Hands a picture out; its memory is reused once the last viewer has dropped it.
     pub fn hand_out(&mut self, image: Image) -> Arc<Image> {
         let image = Arc::new(image);
-        if self.handed_out.len() == MOST {
+        if self.handed_out.len() == MAX_POOL_SIZE {
             self.handed_out.remove(0);
         }
         self.handed_out.push(Arc::clone(&image));
@@ -56,6 +56,6 @@ mod tests {
         let keep: Vec<_> = (0..9)
             .map(|_| frame_pool.hand_out(Image::new(1, 1)))
             .collect();
-        assert_eq!(frame_pool.handed_out.len(), MOST, "{}", keep.len());
+        assert_eq!(frame_pool.handed_out.len(), MAX_POOL_SIZE, "{}", keep.len());
     }
 }

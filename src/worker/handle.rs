@@ -127,7 +127,7 @@ impl Worker {
             _ => None,
         });
         drop(mailbox);
-        waiting.for_each(|path| self.shared.tell_unwritten(&path));
+        waiting.for_each(|path| self.shared.report_unwritten(&path));
     }
 
     /// Measures a study, replacing any other, while there is nothing more urgent.

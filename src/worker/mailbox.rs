@@ -181,7 +181,7 @@ impl Mailbox {
     }
 
     /// Whether a job for what the window shows next is running or waiting.
-    fn is_hurried(&self) -> bool {
+    fn has_prompt_work(&self) -> bool {
         let mut waiting = self.waiting.iter();
         self.running(Crew::Prompt).is_some() || waiting.any(|job| job.kind().crew() == Crew::Prompt)
     }
@@ -193,9 +193,9 @@ impl Mailbox {
     }
 
     /// Resumes the paused job, unless another one for the window has arrived in the meantime.
-    pub fn go_on(&self) {
+    pub fn resume(&self) {
         let running = self.running(Crew::Patient);
-        if let Some(running) = running.filter(|_| !self.is_hurried()) {
+        if let Some(running) = running.filter(|_| !self.has_prompt_work()) {
             running.control.go_on();
         }
     }
@@ -206,7 +206,7 @@ impl Mailbox {
         crew: Crew,
         exports: &[ExportState],
     ) -> Option<(Job, Arc<RenderControl>)> {
-        if crew == Crew::Patient && self.is_hurried() {
+        if crew == Crew::Patient && self.has_prompt_work() {
             return None;
         }
         let is_paused = |job: &Job| {

@@ -23,7 +23,7 @@ use crate::trace::{KeptQuery, RenderControl, Threads, Tracer, survey, visible};
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Idle time after which paused work resumes: during a drag or playback, the next picture is requested sooner.
-const CALM: Duration = Duration::from_millis(100);
+const RESUME_DELAY: Duration = Duration::from_millis(100);
 
 /// How a job ended.
 enum JobOutcome {
@@ -54,39 +54,39 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         query: KeptQuery::default(),
         planner: Planner::default(),
     };
-    let mut woken = Instant::now();
+    let mut last_wake = Instant::now();
     while let Some((mut job, control)) = next_job(shared, crew) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
-            threads.run(|| work_on(shared, &mut job, &mut kept, &control))
+            threads.run(|| run_job(shared, &mut job, &mut kept, &control))
         }));
         let panic = match outcome {
             Ok(outcome) => {
                 let is_study = matches!(job, Job::Lab(_));
                 let has_more = finish(shared, job, Some(outcome));
                 // Waking the window to redraw would disturb the time measurements.
-                if is_study && has_more && woken.elapsed() < REPORT_INTERVAL {
+                if is_study && has_more && last_wake.elapsed() < REPORT_INTERVAL {
                     continue;
                 }
                 None
             }
             Err(panic) => {
                 match &job {
-                    Job::Query(job) => answer_nothing(shared, job),
+                    Job::Query(job) => answer_after_panic(shared, job),
                     Job::Still(StillJob {
                         save_to: Some(path),
                         ..
-                    }) => shared.tell_unwritten(path),
+                    }) => shared.report_unwritten(path),
                     _ => {}
                 }
                 finish(shared, job, None);
                 Some(panic)
             }
         };
-        woken = Instant::now();
+        last_wake = Instant::now();
         // The other crew may be waiting until this one is idle.
         shared.wakeup.notify_all();
         if let Some(panic) = panic {
-            shared.tell(Event::Fault(format!(
+            shared.report(Event::Fault(format!(
                 "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
                 panic_text(panic.as_ref())
             )));
@@ -96,7 +96,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
 }
 
 /// Does a job, or a part of it.
-fn work_on(
+fn run_job(
     shared: &Shared,
     job: &mut Job,
     kept: &mut KeptState,
@@ -140,10 +140,10 @@ fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
             return next;
         }
         mailbox = if crew == Crew::Prompt && mailbox.is_paused() {
-            let waited = shared.wakeup.wait_timeout(mailbox, CALM);
+            let waited = shared.wakeup.wait_timeout(mailbox, RESUME_DELAY);
             let (mailbox, waited) = waited.unwrap_or_else(PoisonError::into_inner);
             if waited.timed_out() {
-                mailbox.go_on();
+                mailbox.resume();
             }
             mailbox
         } else {
@@ -165,12 +165,12 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
             finish_frame(shared, id, exporting, step);
             true
         }
-        (Job::Lab(study), Some(outcome)) => finish_piece(shared, study, &outcome),
+        (Job::Lab(study), Some(outcome)) => finish_study_step(shared, study, &outcome),
         (job, Some(JobOutcome::Unfinished)) => {
             let running = shared.mailbox().finish(job.kind().crew(), Some(job));
             let given_up = running.filter(|running| running.is_given_up);
             if let Some(path) = given_up.and_then(|running| running.save_to) {
-                shared.tell_unwritten(&path);
+                shared.report_unwritten(&path);
             }
             true
         }
@@ -211,14 +211,14 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
 
 /// Publishes the results of a study so far, and puts it back into the queue if there is more to do. Returns whether
 /// there is.
-fn finish_piece(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> bool {
+fn finish_study_step(shared: &Shared, study: Box<Study>, outcome: &JobOutcome) -> bool {
     let mut mailbox = shared.mailbox();
-    let found = Study::clone(&study);
+    let results = Study::clone(&study);
     let has_more = matches!(outcome, JobOutcome::Unfinished);
     let running = mailbox.finish(Crew::Patient, has_more.then_some(Job::Lab(study)));
     let is_wanted = running.is_some_and(|running| !running.is_given_up);
     if is_wanted {
-        shared.outbox().study = Some(found);
+        shared.outbox().study = Some(results);
     }
     has_more && is_wanted
 }
@@ -261,7 +261,7 @@ fn answer(
 
 /// Answers a question whose job has panicked, if someone waits for it: a recorded flight is kept even without its
 /// survey, and a request for a quality must end.
-fn answer_nothing(shared: &Shared, job: &QueryJob) {
+fn answer_after_panic(shared: &Shared, job: &QueryJob) {
     let answer = match &job.question {
         Question::Survey(take, _) => {
             let seen = vec![Vec::new(); take.samples.len()];
@@ -298,7 +298,7 @@ fn still(
     let mut film = Film::new(format.unwrap_or(Format::Png));
     if let (Some(path), Some(traced), Film::Levels(image)) = (path, &job.traced, &mut film) {
         image.clone_from(traced);
-        tell_written(shared, path, save_image(&film, path));
+        report_written(shared, path, save_image(&film, path));
         return JobOutcome::Ended;
     }
     planner.share_meshes(&shared.planner());
@@ -318,13 +318,13 @@ fn still(
         cost,
     });
     if let Some((path, written)) = written {
-        tell_written(shared, path, written);
+        report_written(shared, path, written);
     }
     JobOutcome::Ended
 }
 
-fn tell_written(shared: &Shared, path: &Path, written: Result<(), ExportError>) {
-    shared.tell(match written {
+fn report_written(shared: &Shared, path: &Path, written: Result<(), ExportError>) {
+    shared.report(match written {
         Ok(()) => Event::Saved(path.to_owned()),
         Err(error) => Event::Failed(error.to_string()),
     });

@@ -75,13 +75,13 @@ impl Shared {
     }
 
     /// Tells the user that a picture was not written.
-    pub fn tell_unwritten(&self, path: &Path) {
+    pub fn report_unwritten(&self, path: &Path) {
         let path = path.display();
-        self.tell(Event::Failed(format!("{path} was not written")));
+        self.report(Event::Failed(format!("{path} was not written")));
     }
 
     /// Tells the user something.
-    pub fn tell(&self, event: Event) {
+    pub fn report(&self, event: Event) {
         self.outbox().events.push(event);
         (self.wake)();
     }

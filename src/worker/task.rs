@@ -42,18 +42,18 @@ impl<T: Send + 'static> Background<T> {
 }
 
 impl Background<()> {
-    /// Polls `is_there` at intervals of `rhythm` on a thread of this name until it is true, and calls `wake` then.
-    pub fn look_out(
+    /// Polls `is_ready` at intervals of `interval` on a thread of this name until it is true, and calls `wake` then.
+    pub fn poll_until(
         name: &str,
-        rhythm: Duration,
-        is_there: impl Fn() -> bool + Send + 'static,
+        interval: Duration,
+        is_ready: impl Fn() -> bool + Send + 'static,
         wake: impl FnOnce() + Send + 'static,
     ) -> Self {
         let (sender, receiver) = channel();
         let _ = spawn(name, move || {
             loop {
-                std::thread::sleep(rhythm);
-                if is_there() {
+                std::thread::sleep(interval);
+                if is_ready() {
                     let _ = sender.send(());
                     return wake();
                 }
@@ -77,12 +77,12 @@ impl<T> Background<T> {
         self.take_within(Duration::ZERO)
     }
 
-    /// Like [`Self::take`], but waits up to `most` for the result.
+    /// Like [`Self::take`], but waits up to `timeout` for the result.
     ///
     /// # Errors
     /// [`NoAnswer`] once, if it will never arrive.
-    pub fn take_within(&mut self, most: Duration) -> Option<Result<T, NoAnswer>> {
-        let answer = match self.0.as_ref()?.recv_timeout(most) {
+    pub fn take_within(&mut self, timeout: Duration) -> Option<Result<T, NoAnswer>> {
+        let answer = match self.0.as_ref()?.recv_timeout(timeout) {
             Ok(answer) => Ok(answer),
             Err(RecvTimeoutError::Disconnected) => Err(NoAnswer),
             Err(RecvTimeoutError::Timeout) => return None,
@@ -126,9 +126,9 @@ mod tests {
     fn who_looks_out_wakes_once_there_is_something() {
         let looks = AtomicU32::new(0);
         let (sender, woken) = channel();
-        let is_there = move || looks.fetch_add(1, Ordering::Relaxed) == 3;
+        let is_ready = move || looks.fetch_add(1, Ordering::Relaxed) == 3;
         let wake = move || sender.send(()).expect("somebody waits");
-        let mut guard = Background::look_out("guard", Duration::from_millis(1), is_there, wake);
+        let mut guard = Background::poll_until("guard", Duration::from_millis(1), is_ready, wake);
         assert_eq!(woken.recv(), Ok(()));
         assert_eq!((guard.take(), guard.is_awaited()), (Some(Ok(())), false));
     }

@@ -154,7 +154,7 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     editor.apply(Action::Time(Time::Simplify(100.0)));
     let coarse = editor.scene().animation.keys.len();
     assert!(coarse <= count && count <= fine, "{coarse} {count} {fine}");
-    assert!(editor.timeline().worst.expect("measured").off <= 100.0);
+    assert!(editor.timeline().worst.expect("measured").deviation <= 100.0);
     assert_eq!(editor.scene().animation.take.as_deref(), Some(&*take));
     // A single undo leads back to before the recording.
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -261,7 +261,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(
-        (0.5..2.0).contains(&said.off),
+        (0.5..2.0).contains(&said.deviation),
         "known as soon as it is opened: {said:?}"
     );
     let before = editor.scene().clone();
@@ -273,7 +273,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
     editor.apply(Action::Time(Time::Simplify(5.0)));
     assert!(editor.scene().animation.keys.len() < before.animation.keys.len());
     assert_eq!(editor.scene().animation.frame_count(), 202);
-    assert!(editor.timeline().worst.expect("measured").off <= 5.0 * (1.0 + 1e-6));
+    assert!(editor.timeline().worst.expect("measured").deviation <= 5.0 * (1.0 + 1e-6));
     assert_eq!(editor.timeline().tolerance, 5.0);
     editor.apply(Action::Undo);
     assert_eq!(editor.scene().animation, before.animation);
@@ -294,7 +294,7 @@ fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
     let mut editor = Editor::demo();
     editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
     survey_flight(&mut editor);
-    let said = editor.timeline().worst.expect("a recording").off;
+    let said = editor.timeline().worst.expect("a recording").deviation;
     let before = editor.scene().animation.clone();
     let last = before.keys.len() - 1;
     let shorter = before.without_keys(&[KeyPlace::of_camera(last)].into());
@@ -316,7 +316,7 @@ fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
         (trimmed, before.duration()),
     ] {
         editor.apply(Action::Edit(Edit::animation(edited, "Edit")));
-        let off = editor.timeline().worst.expect("measured").off;
+        let off = editor.timeline().worst.expect("measured").deviation;
         // With its last key removed, or another one added, the last curve changes.
         assert!(off < 5.0 * said, "{off} px where {said} were said");
         editor.apply(Action::Time(Time::Simplify(5.0)));

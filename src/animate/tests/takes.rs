@@ -84,9 +84,9 @@ fn a_take_becomes_few_keys_within_its_tolerance() {
         let simplified = simplify(&take, &seen, tolerance);
         let count = simplified.keys.len();
         assert!(
-            simplified.worst.off <= tolerance,
+            simplified.worst.deviation <= tolerance,
             "{} of {tolerance}",
-            simplified.worst.off
+            simplified.worst.deviation
         );
         assert!(
             count <= last,
@@ -119,7 +119,7 @@ fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     let seen = seen(&jumpy);
     let found = simplify(&jumpy, &seen, 6.0 / 1024.0);
     assert_eq!(found.jumps, 4);
-    assert!(found.worst.off * 1024.0 <= 6.0, "{:?}", found.worst);
+    assert!(found.worst.deviation * 1024.0 <= 6.0, "{:?}", found.worst);
     assert!(found.keys.len() < 40, "{} keys", found.keys.len());
     assert_eq!(simplify(&calm, &self::seen(&calm), 6.0 / 1024.0).jumps, 0);
     // Tapping a key turns the view for a few samples, between rests.
@@ -152,18 +152,21 @@ fn the_tolerance_is_kept_through_pauses_and_kinks() {
     for pixels in [0.1, 0.3, 0.7, 1.5, 2.5, 5.0, 12.0, 40.0] {
         let Simplified { keys, worst, .. } = simplify(&take, &seen, pixels / 1024.0);
         assert!(
-            worst.off * 1024.0 <= pixels * (1.0 + 1e-9),
+            worst.deviation * 1024.0 <= pixels * (1.0 + 1e-9),
             "{} at {pixels}",
-            worst.off * 1024.0
+            worst.deviation * 1024.0
         );
         assert_eq!(
             worst,
-            worst_off(&CameraPath::new(&keys), &take, &seen, ends_of(&keys))
+            worst_deviation(&CameraPath::new(&keys), &take, &seen, ends_of(&keys))
         );
         // Stretched in time, it is the same flight.
         let slower = CameraPath::new(&stretched_keys(&keys, 20.0));
-        let off = worst_off(&slower, &take, &seen, ends_of(slower.keys())).off * 1024.0;
-        assert!((off - worst.off * 1024.0).abs() < 0.05, "{off} stretched");
+        let off = worst_deviation(&slower, &take, &seen, ends_of(slower.keys())).deviation * 1024.0;
+        assert!(
+            (off - worst.deviation * 1024.0).abs() < 0.05,
+            "{off} stretched"
+        );
     }
 }
 

@@ -17,7 +17,7 @@ const TRIES: u64 = 200;
 /// Roll in radians that is visible at the border of a picture of 1024 pixels.
 const VISIBLE_ROLL: f64 = 1e-3;
 /// Allowed deviation of a basis from orthonormality: a tenth of a pixel in 1024.
-const CROOKED: f64 = 1e-4;
+const MAX_DEVIATION: f64 = 1e-4;
 
 /// One map for each way of keeping a camera level at the pole, and one for each way of storing it through turns.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -39,14 +39,14 @@ pub fn maps(effort: u32) -> Vec<Map> {
             (MapSubject::CameraTurns, "is no longer an orthonormal basis"),
             (name.to_owned(), is_default),
             (frames(), Axis::one("camera")),
-            |frames, _| Tries::count([is_crooked(&turned(frames as u64))]),
+            |frames, _| Tries::count([is_distorted(&turned(frames as u64))]),
         )
     };
     vec![
-        pole("yaw and pitch", true, by_angles),
-        pole("fixed-up f32", false, by_fixed_up),
-        drift("yaw and pitch", true, rebuilt),
-        drift("matrix-steps f32", false, stepped),
+        pole("yaw and pitch", true, right_from_angles),
+        pole("fixed-up f32", false, right_from_fixed_up),
+        drift("yaw and pitch", true, basis_from_angles),
+        drift("matrix-steps f32", false, basis_from_steps),
     ]
 }
 
@@ -58,7 +58,7 @@ fn leans(number: u64, degrees: f64, right: fn(f64, f64) -> Option<DVec3>) -> boo
     right(yaw, pitch).is_none_or(|right| (right - level).length() > VISIBLE_ROLL)
 }
 
-fn by_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
+fn right_from_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
     let angles = Orientation {
         yaw,
         pitch,
@@ -68,7 +68,7 @@ fn by_angles(yaw: f64, pitch: f64) -> Option<DVec3> {
 }
 
 /// u = up × w with the world's up, in single precision: as in a typical first program.
-fn by_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
+fn right_from_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
     let (yaw, pitch) = (yaw as f32, pitch as f32);
     let look = Vec3::new(
         yaw.sin() * pitch.cos(),
@@ -79,7 +79,7 @@ fn by_fixed_up(yaw: f64, pitch: f64) -> Option<DVec3> {
     Some(across.try_normalize()?.to_dvec3())
 }
 
-fn is_crooked(basis: &DMat3) -> bool {
+fn is_distorted(basis: &DMat3) -> bool {
     let (u, v, w) = (basis.x_axis, basis.y_axis, basis.z_axis);
     let errors = [
         u.dot(u) - 1.0,
@@ -89,11 +89,11 @@ fn is_crooked(basis: &DMat3) -> bool {
         v.dot(w),
         w.dot(u),
     ];
-    !errors.iter().all(|error| error.abs() <= CROOKED)
+    !errors.iter().all(|error| error.abs() <= MAX_DEVIATION)
 }
 
 /// Yaw and pitch of one frame: a tenth of a degree each, the pitch to and fro.
-fn step(frame: u64) -> (f64, f64) {
+fn frame_turn(frame: u64) -> (f64, f64) {
     let tenth = 0.1_f64.to_radians();
     (
         tenth,
@@ -106,10 +106,10 @@ fn step(frame: u64) -> (f64, f64) {
 }
 
 /// Stores the angles, and computes the basis from them.
-fn rebuilt(frames: u64) -> DMat3 {
+fn basis_from_angles(frames: u64) -> DMat3 {
     let mut angles = Orientation::default();
     for frame in 0..frames {
-        let (yaw, pitch) = step(frame);
+        let (yaw, pitch) = frame_turn(frame);
         angles = angles.turned(yaw, pitch);
     }
     let basis = angles.apply(&Camera::default()).basis();
@@ -117,14 +117,14 @@ fn rebuilt(frames: u64) -> DMat3 {
 }
 
 /// Rotates the stored basis by a small matrix in every frame.
-fn stepped(frames: u64) -> DMat3 {
+fn basis_from_steps(frames: u64) -> DMat3 {
     let mut basis = [
         Vec3::new(1.0_f32, 0.0, 0.0),
         Vec3::new(0.0, 1.0, 0.0),
         Vec3::new(0.0, 0.0, 1.0),
     ];
     for frame in 0..frames {
-        let (yaw, pitch) = step(frame);
+        let (yaw, pitch) = frame_turn(frame);
         let turned = |v: Vec3<f32>| {
             let (sine, cosine) = (yaw as f32).sin_cos();
             let v = Vec3::new(v.x * cosine - v.z * sine, v.y, v.x * sine + v.z * cosine);

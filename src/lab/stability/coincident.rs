@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::map::{AWAY, Map, Tries, places, scales};
+use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis};
 use super::stage::light;
 use super::subject::MapSubject;
 use crate::plan::RenderRequest;
@@ -20,7 +20,7 @@ pub fn map() -> Map {
     Map::measure(
         (MapSubject::Coincident, "pixel that shows the later surface"),
         ("earlier first".to_owned(), true),
-        (places(), scales()),
+        (offset_axis(), scale_axis()),
         |away, scale| {
             let (alone, both) = (seen(away, scale, false), seen(away, scale, true));
             // The later surface is green. Pixels that show nothing are not tried.
@@ -42,7 +42,7 @@ fn levels(scene: &Scene) -> Vec<[f32; 3]> {
 /// Red surfaces, and if `with_later`, green ones in the same places; scaled by `scale`, and `away` sizes from the
 /// origin.
 fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
-    let place = |v: DVec3| (v + AWAY * away) * scale;
+    let to_world = |v: DVec3| (v + OFFSET_DIRECTION * away) * scale;
     let mut scene = Scene::empty();
     (scene.background, scene.ambient_intensity) = (DVec3::ZERO, 1.0);
     scene.lights = List::default();
@@ -56,14 +56,14 @@ fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
     let normal = DVec3::new(0.13, 1.0, 0.29).normalize();
     let in_plane = |x: f64, z: f64| {
         let y = -(normal.x * x + normal.z * z) / normal.y;
-        place(DVec3::new(x, y, z))
+        to_world(DVec3::new(x, y, z))
     };
     let ball = Sphere {
-        center: place(DVec3::new(0.3, 0.6, 0.1)),
+        center: to_world(DVec3::new(0.3, 0.6, 0.1)),
         radius: 0.4 * scale,
     };
     let plane = Plane {
-        point: place(DVec3::ZERO),
+        point: to_world(DVec3::ZERO),
         normal,
     };
     let triangle = Triangle {
@@ -82,7 +82,7 @@ fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
     let later = later.into_iter().filter(|_| with_later);
     scene.objects = List::from(earlier.into_iter().chain(later).collect::<Vec<_>>());
     scene.camera = Camera {
-        position: place(DVec3::new(0.4, 1.3, 2.6)),
+        position: to_world(DVec3::new(0.4, 1.3, 2.6)),
         look_at: DVec3::new(0.0, -0.4, -1.0),
         projection_distance: 1.0,
         ..Camera::default()

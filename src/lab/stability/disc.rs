@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{Axis, Map, Tries, normal_and_aside, scales, scattered};
+use super::map::{Axis, Map, Tries, normal_and_perpendicular, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedDisc, Primitive as _, Ray};
 use crate::scene::Methods;
@@ -14,7 +14,7 @@ const DISTANCES: [f64; 5] = [1.5, 1e1, 1e2, 1e3, 5e3];
 const TRIES: u64 = 300;
 /// Distance from the rim at which rays aim, in radii: twenty times the rounding error of a ray's coordinates at the
 /// largest distance.
-const BESIDE: f64 = 0.006;
+const RIM_OFFSET: f64 = 0.006;
 
 /// The map of the only formula. A failure is a hit by a ray that passes the disc, or a miss by one that does not.
 pub fn map(effort: u32) -> Map {
@@ -25,7 +25,7 @@ pub fn map(effort: u32) -> Map {
             "hit where the ray passes by, or missed where it hits",
         ),
         ("disc".to_owned(), true),
-        (across, scales()),
+        (across, scale_axis()),
         |distance, scale| {
             let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(n, distance, scale));
             Tries::count(tries)
@@ -35,10 +35,14 @@ pub fn map(effort: u32) -> Map {
 
 fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
-    let (normal, aside) = normal_and_aside(number)?;
+    let (normal, perpendicular) = normal_and_perpendicular(number)?;
     let towards = DVec3::new(random(6), random(7), random(8)).try_normalize()?;
     let is_hit = number.is_multiple_of(2);
-    let share = if is_hit { 1.0 - BESIDE } else { 1.0 + BESIDE };
+    let radius_share = if is_hit {
+        1.0 - RIM_OFFSET
+    } else {
+        1.0 + RIM_OFFSET
+    };
     // If the disc is seen edge-on, its rim is not beside it; such tries are left out.
     let cosine = normal.dot(towards).abs();
     let disc = PackedDisc {
@@ -47,7 +51,7 @@ fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
         radius: scale as f32,
         material: 0,
     };
-    let target = towards * distance + aside * share;
+    let target = towards * distance + perpendicular * radius_share;
     let ray = Ray {
         origin: Vec3::<f32>::splat(0.0),
         direction: Vec3::from_dvec3(target.try_normalize()?),

@@ -33,25 +33,25 @@ pub fn map(effort: u32) -> Map {
         ),
         ("all that decides it".to_owned(), true),
         (across, Axis::one("")),
-        |by, _| {
+        |distance, _| {
             // Each takes eight pictures, so their number grows with the square root of the effort only.
             let tries = TRIES * u64::from(effort.isqrt());
-            let moved = (0..tries).flat_map(|number| changed(number, by));
+            let moved = (0..tries).flat_map(|number| changed(number, distance));
             Tries::count(moved)
         },
     )
 }
 
 /// For each frame whose picture has changed, whether its fingerprint is unchanged.
-fn changed(number: u64, by: f64) -> Vec<bool> {
+fn changed(number: u64, distance: f64) -> Vec<bool> {
     let random = |stream| scattered(number, stream) - 0.5;
-    let step = DVec3::new(random(0), random(1), random(2)).normalize_or(DVec3::X) * by;
+    let step = DVec3::new(random(0), random(1), random(2)).normalize_or(DVec3::X) * distance;
     let (before, after) = (flight(DVec3::ZERO), flight(step));
     let frames = FRAMES.iter().filter_map(|frame| {
         let (one, other) = (frame_of(&before, *frame), frame_of(&after, *frame));
         let is_changed = picture(&one) != picture(&other);
-        let print = |scene| fingerprint(scene, Format::Png).ok();
-        is_changed.then(|| print(&one) == print(&other))
+        let fingerprint_of = |scene| fingerprint(scene, Format::Png).ok();
+        is_changed.then(|| fingerprint_of(&one) == fingerprint_of(&other))
     });
     frames.collect()
 }
@@ -59,10 +59,10 @@ fn changed(number: u64, by: f64) -> Vec<bool> {
 /// The demo with a flight of three keys; the middle one is displaced by `step`.
 fn flight(step: DVec3) -> Arc<Scene> {
     let scene = Scene::demo();
-    let at = |time: f64, aside: DVec3| Key {
+    let at = |time: f64, offset: DVec3| Key {
         time,
         value: Camera {
-            position: scene.camera.position + aside,
+            position: scene.camera.position + offset,
             ..scene.camera.clone()
         },
         interpolation: Interpolation::default(),

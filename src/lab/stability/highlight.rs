@@ -1,6 +1,6 @@
 //! Highlights of increasing sharpness.
 
-use super::map::{Axis, Map, Tries, normal_and_aside, scattered};
+use super::map::{Axis, Map, Tries, normal_and_perpendicular, scattered};
 use super::subject::MapSubject;
 use crate::plan::exponent;
 use crate::scene::{HighlightMethod, Method as _};
@@ -40,10 +40,10 @@ pub fn maps(effort: u32) -> Vec<Map> {
 
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {
     let exponent = exponent(method, p);
-    let (normal, aside) = normal_and_aside(number)?;
+    let (normal, perpendicular) = normal_and_perpendicular(number)?;
     // Within the highlight: where it has fallen to no less than e^-3.
-    let off = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
-    let half = normal + aside * off;
+    let offset = (6.0 / p).sqrt().min(1.0) * scattered(number, 6);
+    let half = normal + perpendicular * offset;
     let (normal, half) = (
         Vec3::<f32>::from_dvec3(normal),
         Vec3::<f32>::from_dvec3(half),

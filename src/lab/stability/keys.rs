@@ -15,11 +15,11 @@ const ANGLES: [f64; 8] = [1e-6, 1e-3, 1.0, 90.0, 179.0, 179.9, 179.99, 180.0];
 /// Tries per cell for a first look.
 const TRIES: u64 = 40;
 /// Points that are checked between two keys.
-const PLACES: u32 = 50;
+const SAMPLES: u32 = 50;
 /// Allowed overshoot, as a share of the length of a segment.
 const OVERSHOOT: f64 = 1e-6;
 /// Allowed deviation of directions from unit length or from right angles.
-const CROOKED: f64 = 1e-6;
+const MAX_DEVIATION: f64 = 1e-6;
 
 /// One map for each interpolation of points on a line, and for each interpolation of two directions.
 pub fn maps(effort: u32) -> Vec<Map> {
@@ -63,19 +63,19 @@ fn stops(number: u64, ratio: f64) -> [f64; 4] {
         (1.0, ratio)
     };
     let outer = |stream| outer * (0.5 + scattered(number, stream));
-    let back = if number.is_multiple_of(3) { -1.0 } else { 1.0 };
+    let sign = if number.is_multiple_of(3) { -1.0 } else { 1.0 };
     let first = outer(0);
-    let second = first + inner * back;
+    let second = first + inner * sign;
     [0.0, first, second, second + outer(1)]
 }
 
-fn leaves_segments(stops: &[f64; 4], place: impl Fn(usize, f64) -> f64) -> bool {
+fn leaves_segments(stops: &[f64; 4], position_at: impl Fn(usize, f64) -> f64) -> bool {
     (0..3).any(|segment| {
         let (from, to) = (stops[segment], stops[segment + 1]);
         let slack = (to - from).abs() * OVERSHOOT;
         let (low, high) = (from.min(to) - slack, from.max(to) + slack);
-        (0..=PLACES).any(|n| {
-            let x = place(segment, f64::from(n) / f64::from(PLACES));
+        (0..=SAMPLES).any(|n| {
+            let x = position_at(segment, f64::from(n) / f64::from(SAMPLES));
             !(low..=high).contains(&x)
         })
     })
@@ -113,13 +113,14 @@ fn uniform_overshoots(stops: &[f64; 4]) -> bool {
 }
 
 /// Returns whether the steps of a rotation are uneven, or one of its directions is invalid.
-fn is_uneven(looks: &[Option<DVec3>], angle: f64) -> bool {
-    let mean = angle / f64::from(PLACES);
+fn is_uneven(directions: &[Option<DVec3>], angle: f64) -> bool {
+    let mean = angle / f64::from(SAMPLES);
     // Comparisons with NaN are false, so NaN counts as a failure.
-    let is_right =
-        |look: &Option<DVec3>| look.is_some_and(|look| (look.dot(look) - 1.0).abs() <= CROOKED);
-    !looks.iter().all(is_right)
-        || !looks.windows(2).all(|pair| match (pair[0], pair[1]) {
+    let is_unit = |direction: &Option<DVec3>| {
+        direction.is_some_and(|direction| (direction.dot(direction) - 1.0).abs() <= MAX_DEVIATION)
+    };
+    !directions.iter().all(is_unit)
+        || !directions.windows(2).all(|pair| match (pair[0], pair[1]) {
             (Some(a), Some(b)) => {
                 let step = 2.0 * (a - b).length().atan2((a + b).length());
                 // Rounding of directions in single precision, 6e-8, is not the method's fault.
@@ -129,7 +130,7 @@ fn is_uneven(looks: &[Option<DVec3>], angle: f64) -> bool {
         })
 }
 
-fn look(yaw: f64) -> DVec3 {
+fn direction_of(yaw: f64) -> DVec3 {
     DVec3::new(yaw.sin(), 0.0, -yaw.cos())
 }
 
@@ -142,45 +143,48 @@ fn path_loses_direction(yaw: f64, angle: f64) -> bool {
         Key::new(time, level.apply(&Camera::default()))
     };
     let path = CameraPath::new(&[key(0.0, yaw), key(1.0, yaw + angle)]);
-    let camera = |n: u32| path.at(f64::from(n) / f64::from(PLACES));
-    let cameras: Vec<Option<Camera>> = (0..=PLACES).map(camera).collect();
+    let camera = |n: u32| path.at(f64::from(n) / f64::from(SAMPLES));
+    let cameras: Vec<Option<Camera>> = (0..=SAMPLES).map(camera).collect();
     let is_crooked = |camera: &Option<Camera>| {
-        let upright = |camera: &Camera| camera.look_at.dot(camera.up).abs() <= CROOKED;
+        let upright = |camera: &Camera| camera.look_at.dot(camera.up).abs() <= MAX_DEVIATION;
         !camera.as_ref().is_some_and(upright)
     };
-    let looks: Vec<_> = cameras
+    let directions: Vec<_> = cameras
         .iter()
         .map(|camera| camera.as_ref().map(|camera| camera.look_at))
         .collect();
-    let whole = match (&cameras[0], &cameras[cameras.len() - 1]) {
+    let total_angle = match (&cameras[0], &cameras[cameras.len() - 1]) {
         (Some(from), Some(to)) => motion_between(from, to).turn.to_radians(),
         _ => f64::NAN,
     };
-    let is_whole = (whole - angle).abs() < 1e-6;
-    cameras.iter().any(is_crooked) || is_uneven(&looks, angle) || !is_whole
+    let covers_angle = (total_angle - angle).abs() < 1e-6;
+    cameras.iter().any(is_crooked) || is_uneven(&directions, angle) || !covers_angle
 }
 
 /// Linear interpolation of two unit vectors, normalised.
 fn lerp_loses_direction(yaw: f64, angle: f64) -> bool {
-    let (a, b) = (look(yaw), look(yaw + angle));
+    let (a, b) = (direction_of(yaw), direction_of(yaw + angle));
     let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));
     let at = |n: u32| {
-        let along = n as f32 / PLACES as f32;
+        let along = n as f32 / SAMPLES as f32;
         (a + (b - a) * along).try_normalize().map(Vec3::to_dvec3)
     };
-    is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
+    is_uneven(&(0..=SAMPLES).map(at).collect::<Vec<_>>(), angle)
 }
 
 /// Spherical interpolation of directions, after Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 fn slerp_loses_direction(yaw: f64, angle: f64) -> bool {
-    let (a, b) = (look(yaw), look(yaw + angle));
+    let (a, b) = (direction_of(yaw), direction_of(yaw + angle));
     let (a, b) = (Vec3::<f32>::from_dvec3(a), Vec3::<f32>::from_dvec3(b));
-    let whole = a.dot(b).acos();
+    let total_angle = a.dot(b).acos();
     let at = |n: u32| {
-        let along = n as f32 / PLACES as f32;
-        let (out, into) = (((1.0 - along) * whole).sin(), (along * whole).sin());
-        let sum = a * (out / whole.sin()) + b * (into / whole.sin());
+        let along = n as f32 / SAMPLES as f32;
+        let (out, into) = (
+            ((1.0 - along) * total_angle).sin(),
+            (along * total_angle).sin(),
+        );
+        let sum = a * (out / total_angle.sin()) + b * (into / total_angle.sin());
         Some(sum.to_dvec3())
     };
-    is_uneven(&(0..=PLACES).map(at).collect::<Vec<_>>(), angle)
+    is_uneven(&(0..=SAMPLES).map(at).collect::<Vec<_>>(), angle)
 }

@@ -11,10 +11,10 @@ const SCALES: [f64; 12] = [
     1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7,
 ];
 /// Distances of a scene from the origin, relative to its size.
-const PLACES: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
+const OFFSETS: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 
 /// The unit direction in which scenes are moved away from the origin; it is parallel to no axis.
-pub const AWAY: DVec3 = DVec3::new(0.6, -0.64, 0.48);
+pub const OFFSET_DIRECTION: DVec3 = DVec3::new(0.6, -0.64, 0.48);
 
 /// An axis of a map.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,12 +115,12 @@ impl Map {
         (subject, failure): (MapSubject, &'static str),
         (method, is_default): (String, bool),
         (across, up): (Axis, Axis),
-        mut try_at: impl FnMut(f64, f64) -> Tries,
+        mut tries_at: impl FnMut(f64, f64) -> Tries,
     ) -> Self {
         let mut cells = Vec::new();
         for &y in &up.values {
             for &x in &across.values {
-                cells.push(try_at(x, y));
+                cells.push(tries_at(x, y));
             }
         }
         Self {
@@ -155,12 +155,12 @@ impl Map {
     }
 }
 
-pub fn scales() -> Axis {
+pub fn scale_axis() -> Axis {
     Axis::new("scale", &SCALES)
 }
 
-pub fn places() -> Axis {
-    Axis::new("sizes away", &PLACES)
+pub fn offset_axis() -> Axis {
+    Axis::new("sizes away", &OFFSETS)
 }
 
 /// A pseudorandom number from 0 to below 1, the same every time for a number and a stream.
@@ -171,7 +171,7 @@ pub fn scattered(number: u64, stream: u64) -> f64 {
 }
 
 /// A pseudorandom direction, and one perpendicular to it; rarely `None`. Uses streams 0 to 5.
-pub fn normal_and_aside(number: u64) -> Option<(DVec3, DVec3)> {
+pub fn normal_and_perpendicular(number: u64) -> Option<(DVec3, DVec3)> {
     let random = |stream| scattered(number, stream) * 2.0 - 1.0;
     let normal = DVec3::new(random(0), random(1), random(2)).try_normalize()?;
     let other = DVec3::new(random(3), random(4), random(5));

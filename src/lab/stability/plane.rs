@@ -1,6 +1,6 @@
 //! Rays that hit a plane at grazing angles.
 
-use super::map::{Axis, Map, Tries, normal_and_aside, scales, scattered};
+use super::map::{Axis, Map, Tries, normal_and_perpendicular, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedPlane, Primitive as _, Ray};
 use crate::scene::Methods;
@@ -21,7 +21,7 @@ pub fn map(effort: u32) -> Map {
             "distance off by more than 16u / sin(angle)",
         ),
         ("plane".to_owned(), true),
-        (across, scales()),
+        (across, scale_axis()),
         |angle, scale| {
             let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(n, angle, scale));
             Tries::count(tries)
@@ -30,16 +30,16 @@ pub fn map(effort: u32) -> Map {
 }
 
 fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
-    let (normal, along) = normal_and_aside(number)?;
+    let (normal, tangent) = normal_and_perpendicular(number)?;
     let (sine, cosine) = angle.to_radians().sin_cos();
-    let direction = along * cosine - normal * sine;
+    let direction = tangent * cosine - normal * sine;
     let plane = PackedPlane {
         normal: Vec3::<f32>::from_dvec3(normal),
         offset: (-scale * (1.0 + scattered(number, 6))) as f32,
         material: 0,
     };
     let ray = Ray {
-        origin: Vec3::<f32>::from_dvec3(along * (scale * (scattered(number, 7) * 2.0 - 1.0))),
+        origin: Vec3::<f32>::from_dvec3(tangent * (scale * (scattered(number, 7) * 2.0 - 1.0))),
         direction: Vec3::from_dvec3(direction),
     };
     let found = f64::from(plane.meet(&ray, &Methods::default()));

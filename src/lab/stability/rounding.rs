@@ -18,7 +18,7 @@ const SIDE: u32 = 128;
 /// Solids along each side of the floor.
 const ROW: usize = 5;
 /// Allowed difference of a channel: one level of 8 bits.
-const STEP: f32 = 1.0 / 255.0;
+const LEVEL_STEP: f32 = 1.0 / 255.0;
 
 /// One map for plain single precision, and one for the plan's way of using it.
 pub fn maps() -> Vec<Map> {
@@ -60,7 +60,7 @@ fn distances() -> Axis {
 fn differ(one: [f32; 3], other: [f32; 3]) -> bool {
     let channels = one.into_iter().zip(other);
     let mut gaps = channels.map(|(one, other)| (one.min(1.0) - other.min(1.0)).abs());
-    gaps.any(|gap| gap > STEP)
+    gaps.any(|gap| gap > LEVEL_STEP)
 }
 
 /// Flat and round mirrors over a floor that reflect each other, seen from `away` sizes through a lens that keeps them
@@ -91,20 +91,20 @@ fn scene(bounces: u32, away: f64) -> Scene {
             normal: DVec3::Y,
         },
     )];
-    for place in 0..ROW * ROW {
+    for cell in 0..ROW * ROW {
         let along = |number: usize| (number as f64 / (ROW - 1) as f64 - 0.5) * 2.3;
-        let at = DVec3::new(along(place % ROW), 0.29, along(place / ROW));
-        let name = format!("Solid {place}");
+        let middle = DVec3::new(along(cell % ROW), 0.29, along(cell / ROW));
+        let name = format!("Solid {cell}");
         // A ball, or a solid with its own rotation.
-        let shape: Shape = match SOLIDS.get(place % (SOLIDS.len() + 1)) {
+        let shape: Shape = match SOLIDS.get(cell % (SOLIDS.len() + 1)) {
             None => Sphere {
-                center: at,
+                center: middle,
                 radius: 0.25,
             }
             .into(),
             Some(solid) => Mesh {
-                position: at,
-                rotation: DVec3::new(11.0, 23.0, 37.0) * (place + 1) as f64,
+                position: middle,
+                rotation: DVec3::new(11.0, 23.0, 37.0) * (cell + 1) as f64,
                 ..Mesh::of((solid.make)(0.4))
             }
             .into(),

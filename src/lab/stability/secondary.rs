@@ -1,7 +1,7 @@
 //! Shadow rays that hit the surface that they start on, or miss what is close to it: pictures of a ball and a card on
 //! a floor, at every scale and place. The ball is a sphere or a mesh.
 
-use super::map::{AWAY, Map, Tries, places, scales};
+use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis};
 use super::stage::light;
 use super::subject::MapSubject;
 use crate::plan::{Model, RenderRequest};
@@ -14,10 +14,10 @@ use glam::DVec3;
 /// Side of the pictures in pixels.
 const SIDE: u32 = 48;
 /// Brightness below which a lit pixel counts as dark: its light is almost parallel to the surface.
-const GRAZING: f32 = 0.03;
+const MAX_DARK: f32 = 0.03;
 
 /// An offset larger than the scene: rays that start there hit nothing.
-const BEYOND: f64 = 1e6;
+const BEYOND_SCENE: f64 = 1e6;
 
 /// What the ball is made of.
 #[derive(Clone, Copy, PartialEq)]
@@ -41,56 +41,59 @@ pub fn maps() -> Vec<Map> {
 }
 
 fn maps_of(ball: BallKind, [acne, leak]: [MapSubject; 2]) -> Vec<Map> {
-    let at_home = scene(ball, 0.0, 1.0);
-    let double = |offset| lit(&at_home, (offset, Precision::Double), Model::Needed);
-    let (truth, facing) = (double(RayOffset::Robust), double(RayOffset::Fixed(BEYOND)));
+    let reference_scene = scene(ball, 0.0, 1.0);
+    let double = |offset| lit(&reference_scene, (offset, Precision::Double), Model::Needed);
+    let (truth, facing) = (
+        double(RayOffset::Robust),
+        double(RayOffset::Fixed(BEYOND_SCENE)),
+    );
     let inner = |index: &usize| is_inner(&truth, *index) && is_inner(&facing, *index);
     let inner: Vec<usize> = (0..truth.len()).filter(inner).collect();
     let (bright, shadowed): (Vec<usize>, Vec<usize>) = inner
         .into_iter()
         .filter(|&index| facing[index])
         .partition(|&index| truth[index]);
-    let map = |(subject, failure), way: &Way, tried: &[usize]| {
+    let map = |(subject, failure), setup: &OffsetSetup, tried: &[usize]| {
         Map::measure(
             (subject, failure),
-            (way.name.clone(), way.is_default()),
-            (places(), scales()),
+            (setup.name.clone(), setup.is_default()),
+            (offset_axis(), scale_axis()),
             |away, scale| {
-                let got = lit(
+                let pixels = lit(
                     &scene(ball, away, scale),
-                    (way.offset, Precision::Single),
-                    way.model,
+                    (setup.offset, Precision::Single),
+                    setup.model,
                 );
-                Tries::count(tried.iter().map(|&index| got[index] != truth[index]))
+                Tries::count(tried.iter().map(|&index| pixels[index] != truth[index]))
             },
         )
     };
-    let ways = ways();
-    let acne = ways
+    let setups = setups();
+    let acne = setups
         .iter()
-        .map(|way| map((acne, "lit point that is dark"), way, &bright));
-    let leak = ways
+        .map(|setup| map((acne, "lit point that is dark"), setup, &bright));
+    let leak = setups
         .iter()
-        .map(|way| map((leak, "point in shadow that is lit"), way, &shadowed));
+        .map(|setup| map((leak, "point in shadow that is lit"), setup, &shadowed));
     acne.chain(leak).collect()
 }
 
 /// How rays are moved off a surface, and in which coordinates.
-struct Way {
+struct OffsetSetup {
     name: String,
     offset: RayOffset,
     model: Model,
 }
 
-impl Way {
+impl OffsetSetup {
     fn is_default(&self) -> bool {
         self.offset == RayOffset::default() && self.model == Model::Needed
     }
 }
 
 /// Every method, and those that depend on the place also without rebasing, which removes that dependence.
-fn ways() -> Vec<Way> {
-    let way = |offset: RayOffset, model| Way {
+fn setups() -> Vec<OffsetSetup> {
+    let setup = |offset: RayOffset, model| OffsetSetup {
         name: match model {
             Model::Unrebased => format!("{} (not rebased)", offset.id()),
             _ => offset.id(),
@@ -101,8 +104,8 @@ fn ways() -> Vec<Way> {
     let all = RayOffset::ALL.iter().map(|method| method.value);
     let is_scaled = |offset: &RayOffset| !matches!(offset, RayOffset::Fixed(_));
     let unrebased = all.clone().filter(is_scaled);
-    all.map(|offset| way(offset, Model::Needed))
-        .chain(unrebased.map(|offset| way(offset, Model::Unrebased)))
+    all.map(|offset| setup(offset, Model::Needed))
+        .chain(unrebased.map(|offset| setup(offset, Model::Unrebased)))
         .collect()
 }
 
@@ -119,7 +122,7 @@ fn lit(scene: &Scene, (offset, precision): (RayOffset, Precision), model: Model)
         ..RenderRequest::sized(SIDE, SIDE)
     };
     let light = light(scene, &request);
-    light.iter().map(|pixel| pixel[0] > GRAZING).collect()
+    light.iter().map(|pixel| pixel[0] > MAX_DARK).collect()
 }
 
 /// Returns whether all pixels around this one are lit or dark like it.
@@ -136,7 +139,7 @@ fn is_inner(lit: &[bool], index: usize) -> bool {
 
 /// A floor, a ball on it, a thin card beside it, and one light; scaled by `scale`, and `away` sizes from the origin.
 fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
-    let point = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) + AWAY * away) * scale;
+    let point = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) + OFFSET_DIRECTION * away) * scale;
     let mut scene = Scene::empty();
     let white = DVec3::splat(255.0);
     let black = DVec3::splat(0.0);

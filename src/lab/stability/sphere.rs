@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{Axis, Map, Tries, scales, scattered};
+use super::map::{Axis, Map, Tries, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedSphere, Primitive as _, Ray};
 use crate::scene::{Method as _, Methods, SphereMethod};
@@ -29,7 +29,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
                     method.id.to_owned(),
                     method.value == SphereMethod::default(),
                 ),
-                (across, scales()),
+                (across, scale_axis()),
                 |distance, scale| {
                     let tries = (0..TRIES * u64::from(effort))
                         .map(|n| fails(method.value, n, distance, scale));
@@ -44,19 +44,19 @@ fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
     let turn = |stream| scattered(number, stream) * std::f64::consts::TAU;
     let (a, b, c) = (turn(0), turn(1), turn(2));
     let towards = DVec3::new(a.cos() * b.cos(), b.sin(), a.sin() * b.cos());
-    let Some(aside) = towards
+    let Some(perpendicular) = towards
         .cross(DVec3::new(c.cos(), 0.3, c.sin()))
         .try_normalize()
     else {
         return false;
     };
     let is_hit = number.is_multiple_of(2);
-    let beside = if is_hit {
+    let offset_in_radii = if is_hit {
         0.9
     } else {
         1.1 + scattered(number, 3)
     } * if is_hit { scattered(number, 4) } else { 1.0 };
-    let center = (towards * distance + aside * beside) * scale;
+    let center = (towards * distance + perpendicular * offset_in_radii) * scale;
     let sphere = PackedSphere {
         center: Vec3::<f32>::from_dvec3(center),
         radius: scale as f32,

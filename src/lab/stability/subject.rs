@@ -95,7 +95,7 @@ impl MapSubject {
     }
 
     /// The position of a scene on the axes of the map; `None` if there is none.
-    pub fn standing(self, scene: &Scene) -> Option<(f64, f64)> {
+    pub fn scene_position(self, scene: &Scene) -> Option<(f64, f64)> {
         match self {
             Self::Sphere | Self::Disc => self.farthest(scene),
             Self::Highlight => {

@@ -95,9 +95,9 @@ fn ball(splits: u32) -> Arc<PackedMesh<f32>> {
 
 fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> Option<bool> {
     let random = |stream| scattered(number, stream);
-    let own = (random(0) * ball.triangles.len() as f64) as usize;
-    let (face, smooth) = (&ball.triangles[own], &ball.smooth[own]);
-    let point = place_on(face, random(1), random(2));
+    let face_index = (random(0) * ball.triangles.len() as f64) as usize;
+    let (face, smooth) = (&ball.triangles[face_index], &ball.smooth[face_index]);
+    let point = point_on(face, random(1), random(2));
     let flat = SurfacePoint {
         point,
         normal: face.normal,
@@ -110,30 +110,30 @@ fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> O
         normals: smooth.normals,
         curvature: smooth.curvature,
     };
-    let bent = curved.bend(&flat, -face.normal);
-    let normal = bent.normal.to_dvec3();
-    let aside = DVec3::new(random(3) - 0.5, random(4) - 0.5, random(5) - 0.5);
-    let aside = normal.cross(aside).try_normalize()?;
+    let curved_point = curved.bend(&flat, -face.normal);
+    let normal = curved_point.normal.to_dvec3();
+    let tangent = DVec3::new(random(3) - 0.5, random(4) - 0.5, random(5) - 0.5);
+    let tangent = normal.cross(tangent).try_normalize()?;
     let (sine, cosine) = height.to_radians().sin_cos();
     let ray = Ray {
         origin: if is_lifted {
-            bent.point
+            curved_point.point
         } else {
             flat.point + flat.normal * flat.slack
         },
-        direction: Vec3::from_dvec3(normal * sine + aside * cosine),
+        direction: Vec3::from_dvec3(normal * sine + tangent * cosine),
     };
     let others = ball
         .triangles
         .iter()
         .enumerate()
-        .filter(|&(index, _)| index != own);
-    let mut met = others.map(|(_, other)| -> f32 { other.meet(&ray, &Methods::default()) });
-    Some(met.any(f32::is_finite))
+        .filter(|&(index, _)| index != face_index);
+    let mut hits = others.map(|(_, other)| -> f32 { other.meet(&ray, &Methods::default()) });
+    Some(hits.any(f32::is_finite))
 }
 
 /// A point of a triangle: uniform if the two shares are uniform from 0 to 1.
-fn place_on(face: &PackedTriangle<f32>, first: f64, second: f64) -> Vec3<f32> {
+fn point_on(face: &PackedTriangle<f32>, first: f64, second: f64) -> Vec3<f32> {
     let (first, second) = if first + second > 1.0 {
         (1.0 - first, 1.0 - second)
     } else {

@@ -27,11 +27,11 @@ const SAMPLINGS: [Sampling; 4] = [
     Sampling::Centres,
 ];
 /// The sampling that tells what a pixel should show.
-const TRUTH: Sampling = Sampling::Grid(48);
+const REFERENCE: Sampling = Sampling::Grid(48);
 /// Least brightness of a pixel that is tried: enough to be visible.
-const SEEN: f32 = 8.0 / 255.0;
+const MIN_BRIGHTNESS: f32 = 8.0 / 255.0;
 /// Brightness below which a pixel shows nothing.
-const NOTHING: f32 = 0.5 / 255.0;
+const MAX_DARK: f32 = 0.5 / 255.0;
 /// Ribbons per cell for a first look.
 const TRIES: u64 = 4;
 
@@ -68,11 +68,14 @@ fn missed((first, effort): (u64, u32), width: f64, distance: f64) -> [Tries; SAM
     // Each ribbon takes a picture of a million rays, so their number grows with the square root of the effort only.
     for number in first..first + TRIES * u64::from(effort.isqrt()) {
         let scene = ribbon(number, width, distance);
-        let truth = brightness(&scene, TRUTH);
+        let truth = brightness(&scene, REFERENCE);
         for (sum, sampling) in sums.iter_mut().zip(SAMPLINGS) {
             let shown = brightness(&scene, sampling);
-            let tried = truth.iter().zip(shown).filter(|(truth, _)| **truth >= SEEN);
-            let tries = Tries::count(tried.map(|(_, shown)| shown < NOTHING));
+            let tried = truth
+                .iter()
+                .zip(shown)
+                .filter(|(truth, _)| **truth >= MIN_BRIGHTNESS);
+            let tries = Tries::count(tried.map(|(_, shown)| shown < MAX_DARK));
             *sum = [*sum, tries].into_iter().sum();
         }
     }

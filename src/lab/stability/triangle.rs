@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{AWAY, Map, Tries, places, scales, scattered};
+use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Tip};
 use crate::scene::{Method as _, Methods, TriangleMethod};
@@ -28,11 +28,12 @@ pub fn maps(effort: u32) -> Vec<Map> {
                     method.id.to_owned(),
                     method.value == TriangleMethod::default(),
                 ),
-                (places(), scales()),
+                (offset_axis(), scale_axis()),
                 |away, scale| {
                     let mesh: Vec<PackedTriangle<f32>> =
                         ball.iter().map(|&face| placed(face, away, scale)).collect();
-                    let origin = Vec3::<f32>::from_dvec3((INSIDE + AWAY * away) * scale);
+                    let origin =
+                        Vec3::<f32>::from_dvec3((INSIDE + OFFSET_DIRECTION * away) * scale);
                     let tries = (0..TRIES * u64::from(effort))
                         .filter_map(|n| leaks(method.value, &mesh, origin, n));
                     Tries::count(tries)
@@ -70,8 +71,9 @@ fn leaks(
 }
 
 fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
-    let place = |corner: DVec3| Vec3::<f32>::from_dvec3((corner + AWAY * away) * scale);
-    let [a, b, c] = corners.map(place);
+    let to_world =
+        |corner: DVec3| Vec3::<f32>::from_dvec3((corner + OFFSET_DIRECTION * away) * scale);
+    let [a, b, c] = corners.map(to_world);
     let normal = (c - a).to_dvec3().cross((b - a).to_dvec3());
     PackedTriangle {
         corners: [a, b, c],
@@ -87,7 +89,7 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
 
 /// An octahedron whose faces are split twice and projected onto the sphere around them.
 pub(super) fn ball() -> Vec<[DVec3; 3]> {
-    let onto = |v: DVec3| v * (1.0 / v.length());
+    let to_sphere = |v: DVec3| v * (1.0 / v.length());
     let mut faces = Vec::new();
     for x in [-1.0, 1.0] {
         for y in [-1.0, 1.0] {
@@ -107,7 +109,7 @@ pub(super) fn ball() -> Vec<[DVec3; 3]> {
     }
     for _ in 0..2 {
         let split = faces.iter().flat_map(|&[a, b, c]| {
-            let (ab, bc, ca) = (onto(a + b), onto(b + c), onto(c + a));
+            let (ab, bc, ca) = (to_sphere(a + b), to_sphere(b + c), to_sphere(c + a));
             [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
         });
         faces = split.collect();

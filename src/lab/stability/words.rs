@@ -14,17 +14,17 @@ impl Map {
             let (tries, bound) = (grouped(total.tries), percent(total.bound()));
             return format!("none of {tries} (< {bound})");
         }
-        let columns = self.along(|column, _| column, self.across.values.len());
-        let rows = self.along(|_, row| row, self.up.values.len());
-        let place = part(&self.across, &columns).or_else(|| part(&self.up, &rows));
-        match place {
+        let columns = self.sums_along(|column, _| column, self.across.values.len());
+        let rows = self.sums_along(|_, row| row, self.up.values.len());
+        let part = failing_part(&self.across, &columns).or_else(|| failing_part(&self.up, &rows));
+        match part {
             Some((words, tries)) => format!("{} {words}", percent(tries.rate())),
             None => format!("{} wherever it was tested", percent(total.rate())),
         }
     }
 
     /// The tries at each value of one axis, summed over all values of the other.
-    fn along(&self, mark: impl Fn(usize, usize) -> usize, count: usize) -> Vec<Tries> {
+    fn sums_along(&self, mark: impl Fn(usize, usize) -> usize, count: usize) -> Vec<Tries> {
         let width = self.across.values.len();
         let mut sums = vec![Tries::default(); count];
         for (index, cell) in self.cells.iter().enumerate() {
@@ -37,7 +37,7 @@ impl Map {
 
 /// The part of an axis that contains all failures, in words, with its tries; `None` if that is the whole axis, or if
 /// there are none.
-fn part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
+fn failing_part(axis: &Axis, sums: &[Tries]) -> Option<(String, Tries)> {
     let fails = |at: &usize| sums[*at].failures > 0;
     let first = (0..sums.len()).find(fails)?;
     let last = (0..sums.len()).rev().find(fails)?;

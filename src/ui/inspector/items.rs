@@ -243,7 +243,7 @@ fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     match cached {
         Some((objects, users)) if is_dragging && objects == scene.objects.len() => users,
         _ => {
-            let users = Item::wearing(scene, name).count();
+            let users = Item::users_of_pack(scene, name).count();
             ui.data_mut(|data| data.insert_temp(id, (scene.objects.len(), users)));
             users
         }
@@ -334,7 +334,7 @@ pub fn pack(
 pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = FieldRows::new(ui);
     rows.heading("Used by");
-    let mut all = Item::wearing(scene, name);
+    let mut all = Item::users_of_pack(scene, name);
     let users: Vec<Item> = all.by_ref().take(MAX_LISTED_USERS).collect();
     let more = all.count();
     if users.is_empty() {

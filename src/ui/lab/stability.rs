@@ -42,7 +42,7 @@ impl Stability {
             });
             ui.vertical(|ui| {
                 let map = &self.maps[self.chosen];
-                let position = map.subject.standing(scene);
+                let position = map.subject.scene_position(scene);
                 ui.label(headline(map));
                 ui.weak(map.sentence());
                 let warning = position.filter(|&position| heat::is_near_failing(map, position));

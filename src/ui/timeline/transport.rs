@@ -274,8 +274,11 @@ pub fn show_take(ui: &mut Ui, editor: &Editor, paused: f64, out: &mut UiRequests
     );
     ui.label(RichText::new(text).monospace());
     let worst = editor.timeline().worst;
-    if let Some(worst) = worst.filter(|worst| worst.off.is_finite()) {
-        let text = format!("· deviation {:.1} px at {:.1} s", worst.off, worst.time);
+    if let Some(worst) = worst.filter(|worst| worst.deviation.is_finite()) {
+        let text = format!(
+            "· deviation {:.1} px at {:.1} s",
+            worst.deviation, worst.time
+        );
         ui.label(RichText::new(text).monospace())
             .hint("Largest deviation of the keys from the recording, in pixels of a 1024² picture, and when it occurs");
     }

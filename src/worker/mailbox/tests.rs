@@ -76,11 +76,11 @@ fn what_is_written_waits_for_the_window_and_goes_on() {
     mailbox.finish(Crew::Prompt, None);
     assert!(mailbox.is_paused(), "until it is said to go on");
     mailbox.put(live(3));
-    mailbox.go_on();
+    mailbox.resume();
     assert!(mailbox.is_paused(), "not while somebody waits");
     begin(&mut mailbox, Crew::Prompt).expect("a live view");
     mailbox.finish(Crew::Prompt, None);
-    mailbox.go_on();
+    mailbox.resume();
     assert!(!mailbox.is_paused());
     mailbox.finish(Crew::Patient, None);
     let next = begin(&mut mailbox, Crew::Patient).expect("a job");
