@@ -264,14 +264,14 @@ pub fn remove_oldest(folder: &Path, max_files: usize) {
 
 /// Time of the last modification of a file, if the system tells it.
 pub fn time_of(path: &Path) -> Option<SystemTime> {
-    marks_of(path).map(|(time, _)| time)
+    file_marks(path).map(|(time, _)| time)
 }
 
 /// Modification time and length of a file, which usually differ once it has changed.
 pub type Marks = (SystemTime, u64);
 
 /// The marks of a file; `None` if the system does not tell.
-pub fn marks_of(path: &Path) -> Option<Marks> {
+pub fn file_marks(path: &Path) -> Option<Marks> {
     let metadata = fs::metadata(path).ok()?;
     Some((metadata.modified().ok()?, metadata.len()))
 }

@@ -13,7 +13,7 @@ use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_document;
 use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{
-    Frames, JobError, LOOP_HINT, Pattern, Sequence, Video, check_place, write_job,
+    Frames, JobError, LOOP_HINT, Pattern, Sequence, Video, check_writable, write_job,
 };
 use crate::image::Format;
 use crate::scene::{Method as _, Sampling, Scene};
@@ -110,7 +110,7 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
             sequence.prepare()?;
         }
         if !is_with_frames || sequence.folder.exists() {
-            check_place(path)?;
+            check_writable(path)?;
         }
         if let Some(remark) = remark {
             report_warning(&remark);

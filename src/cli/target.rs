@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::CliError;
-use crate::export::check_place;
+use crate::export::check_writable;
 use crate::files::has_ending;
 use crate::image::Format;
 use crate::mesh::is_mesh_file;
@@ -17,7 +17,7 @@ pub fn picture_format(path: Option<&Path>) -> Result<Option<Format>, CliError> {
         return Ok(None);
     };
     let format = Format::of_path(path)?;
-    check_place(path)?;
+    check_writable(path)?;
     Ok(Some(format))
 }
 
@@ -36,5 +36,5 @@ pub fn check_table(path: Option<&Path>) -> Result<(), CliError> {
         );
         return Err(CliError::usage(sentence));
     }
-    Ok(check_place(path)?)
+    Ok(check_writable(path)?)
 }

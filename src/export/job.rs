@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::{check_place, disk_error, write_text};
+use super::save::{check_writable, disk_error, write_text};
 use super::sequence::Sequence;
 use crate::files::{back_up, is_same_file, read_file, write_atomic};
 use crate::scene::{Document, SceneError};
@@ -88,7 +88,7 @@ pub fn write_job(
         return Err(JobError::TooManyPieces(frames));
     }
     // Checked first, so that no file is moved to a backup for a template that cannot be written.
-    check_place(path)?;
+    check_writable(path)?;
     let is_copied = !file.is_some_and(|file| is_same_file(file, &scene));
     let backup = if is_copied {
         write_scene(document, file.filter(|_| !has_files), &scene)?

@@ -40,6 +40,6 @@ pub use job::{JobError, JobFiles, write_job};
 pub use manifest::{Hash, Manifest};
 pub use pattern::{Pattern, PatternError};
 pub use povray::{ByPovray, PovrayError, by_povray, povray_differences, povray_text};
-pub use save::{check_place, save_image, save_picture, write_text};
+pub use save::{check_writable, save_image, save_picture, write_text};
 pub use sequence::{LOOP_HINT, NoSuchFrame, Sequence, SequenceError};
 pub use video::Video;

@@ -63,7 +63,7 @@ pub fn write_beside(
 ///
 /// # Errors
 /// [`ExportError::Disk`].
-pub fn check_place(path: &Path) -> Result<(), ExportError> {
+pub fn check_writable(path: &Path) -> Result<(), ExportError> {
     let new_file = NewFile::beside(path).map_err(|source| disk_error(path, source))?;
     if let Some(folder) = new_file.path().parent() {
         remove_leftovers(folder);

@@ -120,7 +120,7 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
 
 /// The first object that a ray with a unit direction hits, as an index into the scene's list, and its distance;
 /// `None` if a light's marker comes first. Of several objects in one surface, any may be returned.
-pub fn first_met(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
+pub fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let hit = nearest_hit(scene, origin, direction)?;
     match hit.kind {
         HitKind::Object(index) => Some((index, hit.t)),

@@ -40,7 +40,7 @@ mod gltf_scene;
 
 use std::path::Path;
 
-use crate::files::{Marks, has_ending, marks_of};
+use crate::files::{Marks, file_marks, has_ending};
 
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
@@ -77,9 +77,9 @@ pub fn is_mesh_file(path: &Path) -> bool {
 /// Returns the current time and size of a mesh file, to detect changes. For a glTF file they include the `.bin` file
 /// of the same name that most programs write beside it, possibly later. `None` if the system does not tell.
 pub fn marks_of_mesh(path: &Path) -> Option<Marks> {
-    let (time, length) = marks_of(path)?;
+    let (time, length) = file_marks(path)?;
     let is_gltf = has_ending(path, "gltf");
-    let bin_marks = is_gltf.then(|| marks_of(&path.with_extension("bin")));
+    let bin_marks = is_gltf.then(|| file_marks(&path.with_extension("bin")));
     let (bin_time, bin_length) = bin_marks.flatten().unwrap_or((time, 0));
     Some((time.max(bin_time), length.saturating_add(bin_length)))
 }

@@ -16,7 +16,7 @@ const SIDES: u32 = 48;
 const TUBE_SIDES: u32 = 24;
 
 /// Largest angle in degrees between faces that are shaded as one surface: round sides look curved, rims stay sharp.
-const ROUND: f64 = 30.0;
+const ROUND_SMOOTHING: f64 = 30.0;
 
 /// A kind of solid.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,7 @@ const fn round(name: &'static str, make: fn(f64) -> Triangles) -> Solid {
     Solid {
         name,
         make,
-        smooth: ROUND,
+        smooth: ROUND_SMOOTHING,
     }
 }
 
@@ -253,7 +253,8 @@ mod tests {
                 let angle = normals[pair[0]]
                     .angle_between(normals[pair[1]])
                     .to_degrees();
-                let (is_rim, is_curve) = (angle > 60.0, (1e-4..ROUND * 0.8).contains(&angle));
+                let (is_rim, is_curve) =
+                    (angle > 60.0, (1e-4..ROUND_SMOOTHING * 0.8).contains(&angle));
                 assert!(angle < 1e-4 || is_rim || is_curve, "{name}: {angle}");
                 assert!(smooth > 0.0 || !is_curve, "{name} is round: {angle}");
             }

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::simd::Vec3;
 
 /// Number of sampled rays along each side of the picture.
-const LOOKED_AT: u32 = 48;
+const RAYS_PER_SIDE: u32 = 48;
 
 /// Counts of what rays are tested against.
 #[derive(Debug, Default)]
@@ -26,9 +26,9 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
     let all = plan.bounded();
     let mut tests = Tests::default();
     let position =
-        |step: u32, side: u32| (f64::from(step) + 0.5) / f64::from(LOOKED_AT) * f64::from(side);
-    for row in 0..LOOKED_AT {
-        for column in 0..LOOKED_AT {
+        |step: u32, side: u32| (f64::from(step) + 0.5) / f64::from(RAYS_PER_SIDE) * f64::from(side);
+    for row in 0..RAYS_PER_SIDE {
+        for column in 0..RAYS_PER_SIDE {
             let (x, y) = (
                 position(column, request.width),
                 position(row, request.height),
@@ -37,7 +37,7 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
             geometry.count(Ray { origin, direction }, &mut tests);
         }
     }
-    let rays = f64::from(LOOKED_AT * LOOKED_AT);
+    let rays = f64::from(RAYS_PER_SIDE * RAYS_PER_SIDE);
     let [boxes, primitives] = [tests.boxes, tests.primitives].map(|tests| tests as f64 / rays);
     let tested = boxes + primitives;
     let boxes = format!("{boxes:.0}");

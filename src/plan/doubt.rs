@@ -15,7 +15,7 @@ impl<R: Real> Plan<R> {
     pub fn doubt(&mut self) {
         let meshes = self.geometry.iter().flat_map(|all| &all.meshes);
         let middles = meshes.map(|mesh| mesh.centre.max_abs());
-        self.farthest_middle = middles.fold(R::ZERO, R::max);
-        self.blur = Blur::of_size(self.view.farthest_start() + self.farthest_middle);
+        self.max_mesh_centre = middles.fold(R::ZERO, R::max);
+        self.blur = Blur::of_size(self.view.farthest_start() + self.max_mesh_centre);
     }
 }

@@ -44,7 +44,7 @@ impl<R: Real> Geometry<R> {
     /// flat. `number` counts from the geometry's first primitive.
     pub fn flat_at(&self, number: usize) -> Option<(Vec3<R>, R)> {
         let Some(instance) = self.mesh_of(number) else {
-            return self.primitives.with(number, AskFlat);
+            return self.primitives.with(number, FlatExtent);
         };
         let face = number - instance.first;
         let normals = instance.mesh.smooth.get(face);
@@ -63,9 +63,9 @@ fn largest_of<R: Real>(primitives: &Primitives<R>) -> R {
 }
 
 /// Calls [`Primitive::flat`].
-pub struct AskFlat;
+pub struct FlatExtent;
 
-impl<R: Real> WithPrimitive<R> for AskFlat {
+impl<R: Real> WithPrimitive<R> for FlatExtent {
     type Output = Option<(Vec3<R>, R)>;
 
     fn run<P: Primitive<R>>(self, primitive: &P) -> Self::Output {

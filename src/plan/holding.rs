@@ -57,7 +57,7 @@ impl<R: Real> Plan<R> {
                 point: light.world_position,
                 direction: None,
             });
-            light.may_touch |= light.culled_faces.iter().any(Option::is_some);
+            light.may_be_on_surface |= light.culled_faces.iter().any(Option::is_some);
         }
     }
 }

@@ -34,9 +34,9 @@ pub struct PointLight<R> {
     pub rounding: R,
     /// Whether it may be in the plane of a surface: surfaces are then lit only if it is above them by more than
     /// rounding.
-    pub may_be_level: bool,
+    pub may_be_in_plane: bool,
     /// Whether it may be on a surface: anything within rounding of it then casts no shadow.
-    pub may_touch: bool,
+    pub may_be_on_surface: bool,
 }
 
 /// A ball whose surface contains a light. A ray to the light hits the ball at the light and, if it comes from
@@ -105,7 +105,7 @@ pub fn pack_lights<R: Real>(
         })
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
-            let may_touch = touches(index);
+            let may_be_on_surface = touches(index);
             let ball = ball(index).map(|object| &scene.objects[object].shape);
             let world_rounding = light.position.abs().max_element() * roundings::<f64>();
             PointLight {
@@ -117,8 +117,8 @@ pub fn pack_lights<R: Real>(
                 holders: holders(index),
                 ball: HoldingBall::new(ball, light.position),
                 rounding: position.max_abs() * roundings() + R::from_f64(world_rounding),
-                may_be_level: may_touch || has_meshes,
-                may_touch,
+                may_be_in_plane: may_be_on_surface || has_meshes,
+                may_be_on_surface,
             }
         })
         .collect()

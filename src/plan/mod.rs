@@ -73,7 +73,7 @@ pub use bvh::{Bvh, Child, GROUP, Node};
 pub use contacts::RankedObjects;
 pub use crossed::tests_spared;
 pub use culled_faces::CulledFaces;
-pub use flats::AskFlat;
+pub use flats::FlatExtent;
 pub use geometry::{Geometry, PlanCache, Planner};
 pub use hit_order::HitOrder;
 pub use lights::PointLight;

@@ -86,7 +86,7 @@ pub struct Plan<R> {
     /// For each mesh of the geometry, the faces that camera rays skip for the same reason, if any.
     pub unseen_faces: Vec<Option<Arc<CulledFaces>>>,
     /// The number of the primitive on which the camera's rays start.
-    pub eye_on: Option<usize>,
+    pub eye_primitive: Option<usize>,
     /// Primitives that share their surface with earlier objects, which are seen there; sorted by number.
     pub ties: Vec<Tie>,
     /// Least height above hits at which secondary rays start, as a share of the coordinates, so that they clear
@@ -103,7 +103,7 @@ pub struct Plan<R> {
     /// How far rounding may displace the camera's rays; zero if doubtful samples are not looked for.
     pub blur: Blur<R>,
     /// The largest coordinate of a mesh's middle; 0 if doubtful samples are not looked for.
-    pub farthest_middle: R,
+    pub max_mesh_centre: R,
 }
 
 /// Pixels added around every screen rectangle to cover the kernel's rounding.
@@ -152,7 +152,7 @@ impl<R: Real> Plan<R> {
             camera_culled_faces: Vec::new(),
             edge_on: Vec::new(),
             unseen_faces: Vec::new(),
-            eye_on: None,
+            eye_primitive: None,
             ties: Vec::new(),
             clearance: R::ZERO,
             visible_objects: scene.visible_objects().count(),
@@ -160,7 +160,7 @@ impl<R: Real> Plan<R> {
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
-            farthest_middle: R::ZERO,
+            max_mesh_centre: R::ZERO,
         };
         let coincidences = cache.coincidences(&scene.objects, centre);
         let contacts = Contacts::new(scene, request, (&coincidences, cache.light_contacts(scene)));
@@ -176,7 +176,7 @@ impl<R: Real> Plan<R> {
         let is_outside = |index: &usize| contacts.outside_tree().contains(index);
         let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
-        plan.eye_on = contacts.eye_on.as_ref().and_then(number);
+        plan.eye_primitive = contacts.eye_primitive.as_ref().and_then(number);
         plan.find_ties(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {

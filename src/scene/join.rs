@@ -15,12 +15,12 @@ use super::whole::Scene;
 use crate::mesh::{Triangles, position_key};
 
 /// Largest number of faces of a mesh that can be separated: each becomes an object with a name.
-pub const MOST_SEPARATE: usize = 10_000;
+pub const MAX_SEPARATED: usize = 10_000;
 
 impl Mesh {
     /// Returns whether the mesh has triangles, and few enough to be separated.
     pub fn is_separable(&self) -> bool {
-        (1..=MOST_SEPARATE).contains(&self.source.triangles().faces().len())
+        (1..=MAX_SEPARATED).contains(&self.source.triangles().faces().len())
     }
 }
 

@@ -14,7 +14,7 @@ const SAME_TIME_IN_FRAMES: f64 = 0.25;
 
 /// Identifies a key of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct KeyPlace {
+pub struct KeyId {
     /// Index of its track; `None` for the camera.
     pub track: Option<usize>,
     /// Index in the track, in order of time.
@@ -22,11 +22,11 @@ pub struct KeyPlace {
 }
 
 /// A set of keys.
-pub type Keys = BTreeSet<KeyPlace>;
+pub type Keys = BTreeSet<KeyId>;
 /// Interpolation and easing between a key and the next one.
 pub type Pace = (Interpolation, Easing);
 
-impl KeyPlace {
+impl KeyId {
     /// Identifies a key of the camera.
     pub fn of_camera(index: usize) -> Self {
         Self { track: None, index }
@@ -76,7 +76,7 @@ impl Animation {
         let rows = tracks.map(|(track, row)| (Some(track), row.keys.len()));
         std::iter::once((None, self.keys.len()))
             .chain(rows)
-            .flat_map(|(track, count)| (0..count).map(move |index| KeyPlace { track, index }))
+            .flat_map(|(track, count)| (0..count).map(move |index| KeyId { track, index }))
             .collect()
     }
 
@@ -90,7 +90,7 @@ impl Animation {
     }
 
     /// Returns the time of a key, and interpolation and easing after it; `None` if there is no such key.
-    pub fn at_place(&self, place: KeyPlace) -> Option<(f64, Pace)> {
+    pub fn at_place(&self, place: KeyId) -> Option<(f64, Pace)> {
         match place.track {
             None => self.keys.get(place.index).map(time_and_pace),
             Some(track) => {
@@ -101,7 +101,7 @@ impl Animation {
     }
 
     /// Returns a label for a key.
-    pub fn name_of(&self, KeyPlace { track, index }: KeyPlace) -> String {
+    pub fn name_of(&self, KeyId { track, index }: KeyId) -> String {
         let number = index + 1;
         match track.and_then(|track| self.tracks.get(track)) {
             Some(track) => format!("{} key {number}", track.target.name()),
@@ -135,7 +135,7 @@ impl Animation {
         let movement = (shift.clamp(-first, MAX_SECONDS - last), are_copies);
         let (mut animation, mut new) = (self.clone(), Keys::new());
         let mut record = |track, indices: Vec<usize>| {
-            let place = |index| KeyPlace { track, index };
+            let place = |index| KeyId { track, index };
             new.extend(indices.into_iter().map(place));
         };
         let moved = indices(places, None);
@@ -176,10 +176,10 @@ impl Animation {
     }
 
     /// Returns the key of a track at this time, if any.
-    pub fn value_at(&self, track: usize, time: f64) -> Option<KeyPlace> {
+    pub fn value_at(&self, track: usize, time: f64) -> Option<KeyId> {
         let index = self.index_at(&self.tracks.get(track)?.keys, time)?;
         let track = Some(track);
-        Some(KeyPlace { track, index })
+        Some(KeyId { track, index })
     }
 
     /// Returns the indices of the tracks that animate any of the wanted targets, by target.
@@ -304,7 +304,7 @@ fn set_pace<T>(key: &mut Key<T>, change: &impl Fn(&mut Pace)) {
 
 /// Returns the indices of the keys in `places` that belong to one track, in order.
 fn indices(places: &Keys, track: Option<usize>) -> Vec<usize> {
-    let place = |index| KeyPlace { track, index };
+    let place = |index| KeyId { track, index };
     let own = places.range(place(0)..=place(usize::MAX));
     own.map(|place| place.index).collect()
 }
@@ -312,7 +312,7 @@ fn indices(places: &Keys, track: Option<usize>) -> Vec<usize> {
 fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, places: &Keys) {
     let mut index = 0;
     keys.retain(|_| {
-        let place = KeyPlace { track, index };
+        let place = KeyId { track, index };
         index += 1;
         !places.contains(&place)
     });

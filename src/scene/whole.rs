@@ -67,7 +67,7 @@ pub struct Scene {
 impl Scene {
     /// Returns whether objects, lights, color packs, background and ambient intensity are unchanged since one scene
     /// was cloned from the other. May be `false` for equal ones.
-    pub fn has_same_things(&self, other: &Self) -> bool {
+    pub fn shares_contents_with(&self, other: &Self) -> bool {
         self.objects.is_same(&other.objects)
             && self.lights.is_same(&other.lights)
             && self.color_packs.is_same(&other.color_packs)
@@ -76,8 +76,8 @@ impl Scene {
     }
 
     /// Returns whether both look the same to the same camera. May be `false` for equal scenes.
-    pub fn has_same_look(&self, other: &Self) -> bool {
-        self.has_same_things(other)
+    pub fn looks_same_as(&self, other: &Self) -> bool {
+        self.shares_contents_with(other)
             && self.light_visualization == other.light_visualization
             && self.render == other.render
     }

@@ -148,7 +148,7 @@ pub struct Uncertainty<L: SimdFloat> {
     /// Where rounding may decide their colours.
     pub doubt: L::Mask,
     /// The largest coordinate of the centre of a mesh: rays meet faces in coordinates relative to that.
-    farthest_middle: L,
+    max_mesh_centre: L,
     /// Blur and weight of the rays that mirrors send on.
     mirrored: (Blur<L>, L),
 }
@@ -162,7 +162,7 @@ impl<L: SimdFloat> Uncertainty<L> {
             blur: Blur::splat(token, plan.blur),
             weight,
             doubt: weight.less(weight),
-            farthest_middle: L::splat(token, plan.farthest_middle),
+            max_mesh_centre: L::splat(token, plan.max_mesh_centre),
             mirrored: (Blur::splat(token, Blur::NONE), weight),
         }
     }
@@ -217,7 +217,7 @@ impl<L: SimdFloat> HitError<L> {
     #[inline(always)]
     pub fn new(rays: &Uncertainty<L>, (t, cosine): (L, L), surface: &SurfacePoint<L>) -> Self {
         let blur = &rays.blur;
-        let start_blur = Blur::of_sizes(surface.size + rays.farthest_middle);
+        let start_blur = Blur::of_sizes(surface.size + rays.max_mesh_centre);
         let cosine = cosine.abs();
         Self {
             offset: (blur.at(t) + start_blur.start) / cosine,

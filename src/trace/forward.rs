@@ -85,7 +85,7 @@ impl<L: SimdFloat> Bounce<L> {
         kernel: Kernel<L, TREE>,
         packet: usize,
     ) -> IgnoredPrimitive<L> {
-        match (self.parents.get(packet), kernel.plan.eye_on) {
+        match (self.parents.get(packet), kernel.plan.eye_primitive) {
             (Some(parent), _) => parent.ignored,
             (None, None) => IgnoredPrimitive::nothing(kernel.token),
             (None, Some(number)) => {
@@ -164,7 +164,7 @@ impl<L: SimdFloat> Bounce<L> {
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
             let largest_coordinate = bounds.bounding_box().max_abs();
-            let size = plan.farthest + plan.farthest + plan.farthest_middle;
+            let size = plan.farthest + plan.farthest + plan.max_mesh_centre;
             max_hit_error(blur.at(farthest), largest_coordinate + size)
         };
         ball.radius += hit_error.to_f64();

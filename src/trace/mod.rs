@@ -116,7 +116,7 @@ mod query;
 
 pub use control::{RenderControl, Stopwatch};
 pub use heat::heat;
-pub use query::{KeptQuery, SceneQuery, survey, visible};
+pub use query::{CachedQuery, SceneQuery, survey, visible};
 pub use stats::Rays;
 pub use threads::{PoolError, Threads};
 pub use tile::{Grid, Pass, Pixel};

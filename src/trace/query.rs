@@ -27,9 +27,9 @@ pub struct SceneQuery {
 
 /// A query that is kept for reuse: the next one may be about the same objects, seen from elsewhere.
 #[derive(Clone, Debug, Default)]
-pub struct KeptQuery(Option<(List<Object>, SceneQuery)>);
+pub struct CachedQuery(Option<(List<Object>, SceneQuery)>);
 
-impl KeptQuery {
+impl CachedQuery {
     /// Returns the query of a scene. It is reused for the same objects, and meshes that are ready in `planner` are
     /// not packed again.
     pub fn of(&mut self, scene: &Scene, planner: &Planner) -> &SceneQuery {
@@ -97,7 +97,7 @@ impl SceneQuery {
 }
 
 /// Rays along each side of the grid that [`survey`] casts.
-const SURVEYED: u32 = 5;
+const SURVEY_SIDE: u32 = 5;
 
 /// Appends to `seen` what the remaining samples of a recorded flight see of the scene, at a grid of places in a
 /// picture that is `aspect` times as wide as high. If `control` is stopped, only some samples are added, at least
@@ -146,13 +146,13 @@ pub fn visible(
 impl SceneQuery {
     /// Returns what is seen at a grid of places in the picture.
     fn sample_grid(&self, framing: &Framing, aspect: f64) -> Vec<Landmark> {
-        let last = f64::from(SURVEYED - 1);
+        let last = f64::from(SURVEY_SIDE - 1);
         // Parallel rays all see the same place of the sky.
         let is_parallel = framing
             .project_direction(framing.ray([0.0, 0.0]).1)
             .is_none();
-        let all = (0..SURVEYED * SURVEYED).map(|n| {
-            let (x, y) = (f64::from(n % SURVEYED), f64::from(n / SURVEYED));
+        let all = (0..SURVEY_SIDE * SURVEY_SIDE).map(|n| {
+            let (x, y) = (f64::from(n % SURVEY_SIDE), f64::from(n / SURVEY_SIDE));
             let at = [(x / last - 0.5) * aspect, y / last - 0.5];
             let (origin, direction) = framing.ray(at);
             let distance = self.distance(origin, direction);

@@ -320,7 +320,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         let shrink = one / distance;
         let l = to_light * shrink;
         let cosine = hit.surface.normal.dot(l);
-        let lowest = if light.may_be_level {
+        let lowest = if light.may_be_in_plane {
             kernel.min_lit_cosine(light, (l, distance), shrink)
         } else {
             zero
@@ -334,7 +334,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
         if let Some(error) = &point.error {
             // Also if nothing was found that may block it: what is found depends on the neighbouring rays.
             let mut doubt = facing & error.is_lost;
-            if !light.may_touch {
+            if !light.may_be_on_surface {
                 let shiny = point.material.shiny(hit.lanes);
                 doubt =
                     doubt | cosine.abs().at_most(lowest) | error.grazes((cosine, shrink), shiny);
@@ -439,7 +439,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_touch));
+        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_be_on_surface));
         let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
         if point.error.is_some() {

@@ -3,7 +3,7 @@
 use super::intersect::Kernel;
 use super::paths::real;
 use super::thresholds::{GRAZING, GRAZING_ON_FLATS};
-use crate::plan::AskFlat;
+use crate::plan::FlatExtent;
 use crate::primitive::Kind;
 use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
 
@@ -37,7 +37,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn flat_at(self, number: usize) -> Option<(Vec3<L::Real>, L::Real)> {
         match self.geometry() {
             Some((geometry, first)) if first <= number => geometry.flat_at(number - first),
-            _ => self.plan.primitives.with(number, AskFlat),
+            _ => self.plan.primitives.with(number, FlatExtent),
         }
     }
 

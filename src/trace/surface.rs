@@ -195,7 +195,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn reach_to(self, light: &PointLight<L::Real>, distance: L) -> L {
         match self.plan.ray_origin {
             // What the light is on, within rounding, does not block it.
-            RayOrigin::AtHit if light.may_touch => {
+            RayOrigin::AtHit if light.may_be_on_surface => {
                 let part = distance.like(roundings());
                 distance - distance * part - distance.like(light.rounding)
             }

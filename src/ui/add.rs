@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::icons;
 use super::requests::UiRequests;
 use crate::editor::Edit;
-use crate::lab::first_met;
+use crate::lab::first_hit;
 use crate::mesh::SOLIDS;
 use crate::scene::{Mesh, Object, Projection, Scene, Shape};
 
@@ -232,7 +232,7 @@ fn usual_distance(scene: &Scene) -> f64 {
         let has_floor = visible_planes(scene).next().is_some();
         let ahead = camera.framing().filter(|_| has_floor).map(|framing| {
             let (origin, direction) = framing.ray([0.0, 0.0]);
-            first_met(scene, origin, direction)
+            first_hit(scene, origin, direction)
         });
         return match ahead.flatten() {
             Some((_, distance)) => distance.min(MAX_GROUND_DISTANCE),
@@ -264,7 +264,7 @@ fn free_place(
     let (origin, direction) = ray;
     let (mut at, mut size) = (origin + direction * usual, size_at(scene, usual) * scale);
     let mut is_on_floor = false;
-    if let Some((hit_index, distance)) = first_met(scene, origin, direction) {
+    if let Some((hit_index, distance)) = first_hit(scene, origin, direction) {
         let is_floor = matches!(scene.objects[hit_index].shape, Shape::Plane(_));
         is_on_floor = is_floor && distance < usual * MAX_FLOOR_DISTANCE;
         if is_on_floor {
@@ -296,7 +296,7 @@ fn free_place(
 fn place_in_front_of_hit(scene: &Scene, ray: (DVec3, DVec3), usual: f64) -> (DVec3, f64) {
     let (origin, direction) = ray;
     // Things close to the eye fill the picture anyway.
-    let hit_distance = match first_met(scene, origin, direction) {
+    let hit_distance = match first_hit(scene, origin, direction) {
         Some((_, distance)) if distance > MIN_HIT_DISTANCE * usual => distance,
         _ => f64::INFINITY,
     };
@@ -329,7 +329,7 @@ mod tests {
                     .flat_map(|y| (-20..=20).map(move |x| [x, y].map(|at| f64::from(at) / 40.0)));
                 let mut grid = grid.map(|place| framing.ray(place));
                 let seen = grid.any(|(origin, direction)| {
-                    first_met(&with, origin, direction).is_some_and(|(seen, _)| seen == 9)
+                    first_hit(&with, origin, direction).is_some_and(|(seen, _)| seen == 9)
                 });
                 assert!(seen, "{projection:?}: {name}");
             }

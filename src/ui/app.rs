@@ -408,7 +408,7 @@ impl eframe::App for App {
         self.toasts.show(&ctx, place.rect, self.exports.place());
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
-        if let Some(jobs) = self.thumbs.wishes(&ctx, &self.editor, place.rect) {
+        if let Some(jobs) = self.thumbs.jobs(&ctx, &self.editor, place.rect) {
             self.pictures.worker().request_thumbnails(jobs);
         }
         // Asked after the live view was submitted: a question would keep it waiting.

@@ -236,7 +236,7 @@ impl Pictures {
         let cached = self
             .aspect
             .take()
-            .filter(|(of, from, _)| *of == aspect && from.has_same_things(scene));
+            .filter(|(of, from, _)| *of == aspect && from.shares_contents_with(scene));
         let shown = match cached {
             Some((.., before)) => Arc::new(Scene {
                 camera: scene.camera.clone(),

@@ -18,7 +18,7 @@ use super::on_selected::{
 use super::put_down::put_down;
 use super::requests::UiRequests;
 use super::timeline::actions;
-use super::tools::{axis_camera, framing_camera, is_selected_unseen, projected_camera};
+use super::tools::{axis_camera, framing_camera, is_selection_out_of_view, projected_camera};
 use crate::editor::{
     Action, Edit, Editor, Item, ItemKind, Mode, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
@@ -180,7 +180,7 @@ impl App {
 
     /// Tells the user how to see the new selection if it is outside the picture.
     fn report_unseen(&mut self, what: &str) {
-        if is_selected_unseen(&self.editor) {
+        if is_selection_out_of_view(&self.editor) {
             let text = format!("{what} is outside the picture; F frames it");
             self.editor.notify_of_step(text);
         }

@@ -39,7 +39,7 @@ impl SceneCheck {
             let scene = editor.scene();
             let cached = self.scene_hints.take();
             // Finding coincident surfaces takes long, and does not depend on the camera.
-            let cached = cached.filter(|(of, _)| of.has_same_things(scene));
+            let cached = cached.filter(|(of, _)| of.shares_contents_with(scene));
             let found = cached.map_or_else(|| scene_hints(scene), |(_, found)| found);
             self.hints = camera_hints(scene);
             self.hints.extend_from_slice(&found);

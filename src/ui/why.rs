@@ -82,7 +82,7 @@ impl Why {
         let Some((origin, direction, asked_scene)) = &self.asked else {
             return;
         };
-        if !asked_scene.has_same_look(scene) && !self.is_awaited() {
+        if !asked_scene.looks_same_as(scene) && !self.is_awaited() {
             self.ask(scene, (*origin, *direction));
         }
     }

@@ -17,7 +17,7 @@ use crate::image::{Film, Format, Image, ObjectMapper, render_into};
 use crate::lab::{Study, choose};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
-use crate::trace::{KeptQuery, RenderControl, Threads, Tracer, survey, visible};
+use crate::trace::{CachedQuery, RenderControl, Threads, Tracer, survey, visible};
 
 /// Least time between two reports of a study.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
@@ -40,7 +40,7 @@ struct KeptState {
     budget: Budget,
     frame_pool: FramePool,
     mapper: ObjectMapper,
-    query: KeptQuery,
+    query: CachedQuery,
     /// The planner of still pictures.
     planner: Planner,
 }
@@ -51,7 +51,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         budget: Budget::new(),
         frame_pool: FramePool::default(),
         mapper: ObjectMapper::default(),
-        query: KeptQuery::default(),
+        query: CachedQuery::default(),
         planner: Planner::default(),
     };
     let mut last_wake = Instant::now();

@@ -13,8 +13,8 @@ use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
 use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Animation, Document, Interpolation, Key as SceneKey, KeyPlace, Keys, Leftover, MAX_SECONDS,
-    Owner, Projection, Scene, Target, Value,
+    Animation, Document, Interpolation, Key as SceneKey, KeyId, Keys, Leftover, MAX_SECONDS, Owner,
+    Projection, Scene, Target, Value,
 };
 use glint::trace::RenderControl;
 use glint::ui::Ask;
@@ -265,7 +265,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
         "known as soon as it is opened: {said:?}"
     );
     let before = editor.scene().clone();
-    let fourth: Keys = [KeyPlace::of_camera(3)].into();
+    let fourth: Keys = [KeyId::of_camera(3)].into();
     editor.apply(Action::Select(fourth.clone().into()));
     editor.apply(Action::Select(Selection::Camera));
     assert!(editor.selection().keys().is_empty(), "something else is");
@@ -297,14 +297,14 @@ fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
     let said = editor.timeline().worst.expect("a recording").deviation;
     let before = editor.scene().animation.clone();
     let last = before.keys.len() - 1;
-    let shorter = before.without_keys(&[KeyPlace::of_camera(last)].into());
+    let shorter = before.without_keys(&[KeyId::of_camera(last)].into());
     let view = editor.scene().camera.clone();
     let (longer, _) = before.with_key(before.duration() + 5.0, view);
-    let mut stretched = before.without_keys(&[KeyPlace::of_camera(0)].into());
+    let mut stretched = before.without_keys(&[KeyId::of_camera(0)].into());
     for key in &mut stretched.keys {
         key.time *= 1.7;
     }
-    let mut trimmed = before.without_keys(&[KeyPlace::of_camera(0)].into());
+    let mut trimmed = before.without_keys(&[KeyId::of_camera(0)].into());
     let start = trimmed.keys[0].time;
     for key in &mut trimmed.keys {
         key.time -= start;
@@ -861,7 +861,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     assert_eq!(
         *selected,
         [None, Some(0)]
-            .map(|track| KeyPlace { track, index: 0 })
+            .map(|track| KeyId { track, index: 0 })
             .into()
     );
     // Undo restores the selection at the time of the edit; Shift makes a marquee add to it, and Escape cancels a
@@ -899,7 +899,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     harness.window.drag_at(at);
     harness.window.drop_at(at);
     harness.settle();
-    let all = [0, 1].map(|index| KeyPlace {
+    let all = [0, 1].map(|index| KeyId {
         track: Some(0),
         index,
     });

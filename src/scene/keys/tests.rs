@@ -19,19 +19,19 @@ fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
     // At this low frame rate, three successive keys are less than a quarter of a frame apart.
     animation.frames_per_second = 1.0;
     let track = Some(0);
-    let third = KeyPlace { track, index: 2 };
+    let third = KeyId { track, index: 2 };
     let one = Keys::from([third]);
     let without = animation.without_keys(&one);
     assert_eq!(times(&without), [0.0, 1.0, 1.4, 3.0]);
     let (moved, new) = animation.with_moved(&one, 0.8, false);
     assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.0, 3.0]);
-    assert_eq!(new, [KeyPlace { track, index: 3 }].into());
+    assert_eq!(new, [KeyId { track, index: 3 }].into());
     let (moved, _) = animation.with_moved(&one, 1.7, false);
     assert_eq!(times(&moved), [0.0, 1.0, 1.4, 2.9], "onto the last");
     let (copied, new) = animation.with_moved(&one, 0.8, true);
     assert_eq!(times(&copied), [0.0, 1.0, 1.2, 1.4, 2.0, 3.0]);
     assert_eq!(copied.tracks[0].keys[4].value, Value::Number(0.12));
-    assert_eq!(new, [KeyPlace { track, index: 4 }].into());
+    assert_eq!(new, [KeyId { track, index: 4 }].into());
     let nearest = animation.value_at(0, 1.15);
     assert_eq!(nearest, Some(third));
     let none = animation.without_keys(&animation.places());
@@ -71,11 +71,11 @@ fn a_key_among_many_takes_the_place_of_one() {
         keys: [0.0, 1.0, 1.02, 1.04, 3.0].map(key).into(),
         ..Animation::default()
     };
-    let last = Keys::from([KeyPlace::of_camera(4)]);
+    let last = Keys::from([KeyId::of_camera(4)]);
     let (moved, new) = animation.with_moved(&last, -1.975, false);
     let times: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
     assert_eq!(times, [0.0, 1.0, 1.025, 1.04]);
-    assert_eq!(new, [KeyPlace::of_camera(2)].into());
+    assert_eq!(new, [KeyId::of_camera(2)].into());
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn both_sides_of_a_jump_stay_two_keys() {
         keys: [0.0, 1.0, 1.02, 2.0].map(key).into(),
         ..Animation::default()
     };
-    let one = Keys::from([KeyPlace::of_camera(1)]);
+    let one = Keys::from([KeyId::of_camera(1)]);
     for (later, are_copies, count) in [
         (0.01, false, 4),
         (0.02, false, 3),

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::title::title_field;
 use crate::editor::{Edit, Item, marker_radius};
 use crate::scene::{
-    self, ColorPack, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MOST_SEPARATE,
+    self, ColorPack, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
     Object, PropertyValue, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
@@ -220,7 +220,7 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
                 rows.ui.label(problem);
             }
             let hint =
-                format!("Make each triangle an object of its own, up to {MOST_SEPARATE} of them");
+                format!("Make each triangle an object of its own, up to {MAX_SEPARATED} of them");
             if tool_button(rows, "Separate", &hint, mesh.is_separable()) {
                 out.commands.push(Command::Separate);
             }

@@ -9,8 +9,8 @@ use super::items::angle;
 use super::title::{list_differing, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
-    Animation, Easing, Interpolation, KeyPlace, Keys, MAX_SECONDS, Orientation, Owners, Scene,
-    Shape, Target, Value, format_number,
+    Animation, Easing, Interpolation, KeyId, Keys, MAX_SECONDS, Orientation, Owners, Scene, Shape,
+    Target, Value, format_number,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
@@ -91,7 +91,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
 }
 
 /// Rows for the value of a key. Returns the changed animation if the value was edited.
-fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyPlace) -> Option<Animation> {
+fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyId) -> Option<Animation> {
     let Some(track) = place.track else {
         let key = animation.keys.get(place.index)?;
         let mut camera = key.value.clone();
@@ -235,7 +235,7 @@ pub fn interpolations_for(
     current: Interpolation,
 ) -> Vec<Interpolation> {
     let tracks = &editor.scene().animation.tracks;
-    let is_position = |place: &KeyPlace| {
+    let is_position = |place: &KeyId| {
         let track = place.track.and_then(|track| tracks.get(track));
         track.is_none_or(|track| track.target.is_position())
     };

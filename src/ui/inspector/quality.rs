@@ -107,7 +107,7 @@ impl Quality {
             // The user has meanwhile chosen another sampling.
             return None;
         }
-        if !pending.scene.has_same_look(scene) {
+        if !pending.scene.looks_same_as(scene) {
             let scene = Arc::clone(scene);
             self.pending = Some(PendingMeasurement { scene, ..pending });
             return Some(Outcome::Ask(Question::Quality(goal)));

@@ -104,7 +104,7 @@ pub enum Entries<'a> {
     /// This many items from the first: all or none.
     All(usize),
     /// Those with these indices, in ascending order.
-    Some(Vec<usize>),
+    Filtered(Vec<usize>),
     /// All objects, some of them in groups.
     Grouped(&'a Groups),
 }
@@ -123,7 +123,7 @@ impl Entries<'_> {
     pub fn len(&self) -> usize {
         match self {
             Self::All(count) => *count,
-            Self::Some(indices) => indices.len(),
+            Self::Filtered(indices) => indices.len(),
             Self::Grouped(groups) => groups.rows.len(),
         }
     }
@@ -132,7 +132,7 @@ impl Entries<'_> {
         let object = |index| Row::Object(index, false);
         match self {
             Self::All(count) => (row < *count).then_some(row).map(object),
-            Self::Some(indices) => indices.get(row).copied().map(object),
+            Self::Filtered(indices) => indices.get(row).copied().map(object),
             Self::Grouped(groups) => groups.rows.get(row).copied(),
         }
     }
@@ -140,7 +140,7 @@ impl Entries<'_> {
     pub fn row_of(&self, index: usize) -> Option<usize> {
         match self {
             Self::All(count) => (index < *count).then_some(index),
-            Self::Some(indices) => indices.binary_search(&index).ok(),
+            Self::Filtered(indices) => indices.binary_search(&index).ok(),
             Self::Grouped(groups) => {
                 let mut rows = groups.rows.iter();
                 rows.position(|row| matches!(row, Row::Object(other, _) if *other == index))

@@ -270,7 +270,7 @@ impl Outliner {
                 let mut names = item.name(scene).into_iter().chain(group);
                 names.any(|name| name.to_lowercase().contains(&filter))
             };
-            Entries::Some((0..count).filter(matches).collect())
+            Entries::Filtered((0..count).filter(matches).collect())
         };
         Lines(kinds.map(|(kind, count)| (kind, count, entries(kind, count))))
     }

@@ -3,12 +3,12 @@
 use egui::Ui;
 
 use crate::editor::{Edit, Editor};
-use crate::scene::{Easing, KeyPlace};
+use crate::scene::{Easing, KeyId};
 use crate::ui::inspector::interpolations_for;
 use crate::ui::requests::UiRequests;
 
 /// Shows entries for interpolation, easing and deletion of the selected keys, one of which is at `place`.
-pub fn menu(ui: &mut Ui, place: KeyPlace, editor: &Editor, out: &mut UiRequests) {
+pub fn menu(ui: &mut Ui, place: KeyId, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
     let Some((_, (current_interpolation, current_easing))) = animation.at_place(place) else {

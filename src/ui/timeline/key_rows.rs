@@ -9,7 +9,7 @@ use super::ruler::playhead;
 use super::scale::Scale;
 use super::strip::{KEY_HALF_WIDTH, band, diamond, dragged_keys, label, selection_after_click};
 use crate::editor::{Action, Edit, Editor, Selection};
-use crate::scene::{Animation, Interpolation, Key, KeyPlace, Keys};
+use crate::scene::{Animation, Interpolation, Key, KeyId, Keys};
 use crate::ui::hint::Hinted as _;
 use crate::ui::inspector::replaced_keys_message;
 use crate::ui::requests::UiRequests;
@@ -172,7 +172,7 @@ impl KeyRows {
             if ui.input(|input| input.modifiers.shift) {
                 all.clone_from(editor.selection().keys());
             }
-            all.extend((0..keys.len()).map(|index| KeyPlace { track, index }));
+            all.extend((0..keys.len()).map(|index| KeyId { track, index }));
             out.select(all);
         } else {
             self.press_on_empty(ui, &label_response, editor, out);
@@ -186,7 +186,7 @@ impl KeyRows {
         let are_few = selected.len() <= MAX_ALWAYS_SHOWN;
         let mut last = f32::NEG_INFINITY;
         for (index, key) in keys.iter().enumerate() {
-            let (x, place) = (scale.x(key.time), KeyPlace { track, index });
+            let (x, place) = (scale.x(key.time), KeyId { track, index });
             let is_apart = x - last >= MIN_KEY_DISTANCE || are_few && selected.contains(&place);
             if scale.shows(key.time) && is_apart {
                 last = x;
@@ -199,7 +199,7 @@ impl KeyRows {
         &mut self,
         ui: &mut Ui,
         (at, editor): (Pos2, &Editor),
-        place: KeyPlace,
+        place: KeyId,
         out: &mut UiRequests,
     ) {
         let animation = &editor.scene().animation;
@@ -233,7 +233,7 @@ impl KeyRows {
     fn handle_key(
         &mut self,
         response: &Response,
-        (place, time): (KeyPlace, f64),
+        (place, time): (KeyId, f64),
         editor: &Editor,
         out: &mut UiRequests,
     ) {
@@ -315,7 +315,7 @@ impl KeyRows {
         let is_within = |time: f64| scale.shows(time) && bounds.x_range().contains(scale.x(time));
         let keys = keys.iter().enumerate();
         let within = keys.filter(|(_, key)| is_within(key.time));
-        let places = within.map(|(index, _)| KeyPlace { track, index });
+        let places = within.map(|(index, _)| KeyId { track, index });
         marquee.within.extend(places);
     }
 

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::strip::{dragged_keys, selection_after_click};
 use crate::editor::{Action, Edit, Editor};
-use crate::scene::{Camera, KeyPlace, Projection};
+use crate::scene::{Camera, KeyId, Projection};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{Palette, picture_palette};
 use crate::ui::tools::Screen;
@@ -77,7 +77,7 @@ impl Overlay {
         // Among few selected keys, each is drawn and can be grabbed even where it covers others.
         let are_few = selected.len() <= MAX_SELECTED_DRAWN;
         for (index, key) in animation.keys.iter().enumerate() {
-            let is_in_selection = selected.contains(&KeyPlace::of_camera(index));
+            let is_in_selection = selected.contains(&KeyId::of_camera(index));
             let is_selected = is_in_selection && are_few;
             let color = if is_in_selection {
                 colors.accent
@@ -218,7 +218,7 @@ impl Overlay {
         let response = ui.interact(near, id, Sense::click_and_drag());
         let name = format!("Key {} in the view", index + 1);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-        let (selected, key_place) = (editor.selection().keys(), KeyPlace::of_camera(index));
+        let (selected, key_place) = (editor.selection().keys(), KeyId::of_camera(index));
         if response.clicked() {
             out.select(selection_after_click(
                 selected,

@@ -3,7 +3,7 @@
 use egui::{Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
-use crate::scene::{KeyPlace, Keys, without_number};
+use crate::scene::{KeyId, Keys, without_number};
 use crate::ui::theme::{GRID, TRACK, palette};
 
 /// Half the width of a key's symbol, in points.
@@ -53,7 +53,7 @@ fn end_of_name(text: &str) -> usize {
 }
 
 /// The selection after a click on a key; `adds` toggles the key in the current selection.
-pub fn selection_after_click(selected: &Keys, place: KeyPlace, adds: bool) -> Keys {
+pub fn selection_after_click(selected: &Keys, place: KeyId, adds: bool) -> Keys {
     if !adds {
         return Keys::from([place]);
     }
@@ -65,7 +65,7 @@ pub fn selection_after_click(selected: &Keys, place: KeyPlace, adds: bool) -> Ke
 }
 
 /// The keys that a drag of a key moves: the whole selection, if the key is part of it.
-pub fn dragged_keys(selected: &Keys, place: KeyPlace) -> Keys {
+pub fn dragged_keys(selected: &Keys, place: KeyId) -> Keys {
     if selected.contains(&place) {
         selected.clone()
     } else {

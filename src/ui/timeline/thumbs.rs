@@ -56,7 +56,7 @@ impl Thumbs {
 
     /// Returns the thumbnails to trace now, if any: the shot whenever it changes, the keys only when nothing is
     /// dragged, played or recorded.
-    pub fn wishes(
+    pub fn jobs(
         &mut self,
         ctx: &Context,
         editor: &Editor,
@@ -168,7 +168,7 @@ impl Thumbs {
 
 /// Returns whether the thumbnails of two scenes are the same. The viewport's camera does not matter.
 fn shows_same(one: &Scene, other: &Scene) -> bool {
-    one.has_same_look(other) && Arc::ptr_eq(&one.animation, &other.animation)
+    one.looks_same_as(other) && Arc::ptr_eq(&one.animation, &other.animation)
 }
 
 /// Rectangle of the shot in the lower right corner of the viewport.

@@ -7,7 +7,7 @@ use egui::{Button, Id, PopupCloseBehavior, RichText, Slider, Ui};
 
 use super::length::show_length;
 use crate::editor::{Action, Edit, Editor, Repeat, Time, replaced_flight};
-use crate::scene::{Animation, FRAME_RATES, KeyPlace, Keys, MAX_SECONDS};
+use crate::scene::{Animation, FRAME_RATES, KeyId, Keys, MAX_SECONDS};
 use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
@@ -379,7 +379,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
             let (changed, place) = animation.with_key(time, view);
             vec![
                 Action::Edit(Edit::animation(changed, "Add key")),
-                Action::Select(Keys::from([KeyPlace::of_camera(place)]).into()),
+                Action::Select(Keys::from([KeyId::of_camera(place)]).into()),
             ]
         }
         Command::Preset(preset) => {

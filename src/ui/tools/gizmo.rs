@@ -30,7 +30,7 @@ const HEAD_LENGTH: f32 = 9.0;
 /// Minimum length of an arrow that is shown, in points: shorter ones point towards the eye.
 const MIN_ARROW_LENGTH: f32 = 14.0;
 /// Number of corners of a drawn ring.
-const CORNERS: usize = 72;
+const RING_SEGMENTS: usize = 72;
 /// The axes and their names.
 pub const AXES: [(DVec3, &str); 3] = [(DVec3::X, "x"), (DVec3::Y, "y"), (DVec3::Z, "z")];
 
@@ -107,10 +107,10 @@ fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
 fn ring(screen: &Screen, middle: DVec3, axis: DVec3, radius: f64) -> Vec<Pos2> {
     let (u, v) = axis.any_orthonormal_pair();
     let at = |n: usize| {
-        let (sine, cosine) = (n as f64 / CORNERS as f64 * TAU).sin_cos();
+        let (sine, cosine) = (n as f64 / RING_SEGMENTS as f64 * TAU).sin_cos();
         screen.place(middle + (u * cosine + v * sine) * radius)
     };
-    let all: Option<Vec<Pos2>> = (0..CORNERS).map(at).collect();
+    let all: Option<Vec<Pos2>> = (0..RING_SEGMENTS).map(at).collect();
     all.unwrap_or_default()
 }
 

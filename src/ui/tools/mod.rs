@@ -397,7 +397,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
 
 /// Returns whether the whole selection is certainly out of view: the bounding sphere of each item is beside the
 /// picture or behind the camera.
-pub fn is_selected_unseen(editor: &Editor) -> bool {
+pub fn is_selection_out_of_view(editor: &Editor) -> bool {
     let scene = editor.shown();
     let selected = Movable::of(editor.selection(), scene);
     let Some(framing) = scene.camera.framing() else {
