@@ -172,7 +172,7 @@ fn what_gltf_and_mtl_files_show_otherwise_is_told() {
     sample.beside("m.mtl", "newmtl a\nKd 1 0 0\nd 0.1\nKe 1 1 1\n");
     for notes in [&notes, &sample.notes().join("; ")] {
         assert!(
-            notes.contains("transparent") && notes.contains("glows"),
+            notes.contains("transparent") && notes.contains("glowing"),
             "{notes}"
         );
     }
