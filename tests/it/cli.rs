@@ -388,7 +388,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
     assert!(
         said.lines()
             .last()
-            .is_some_and(|line| line.starts_with("take ")),
+            .is_some_and(|line| line.starts_with("use ")),
         "{said}"
     );
     // Scenes, meshes and pictures are not overwritten.

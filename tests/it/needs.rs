@@ -274,7 +274,7 @@ fn what_was_asked_for_is_said_to_be() {
     );
     assert_eq!(
         tree,
-        "10 bounded primitives in a tree of boxes: it was asked for"
+        "10 bounded primitives in a tree of boxes: it was requested"
     );
     let power = why(
         |scene| scene.render.specular = HighlightMethod::Log1p,

@@ -22,7 +22,7 @@ pub fn map(effort: u32) -> Map {
     Map::measure(
         (
             MapSubject::Disc,
-            "hit where the ray passes by, or missed where it hits",
+            "hit where the ray passes by or missed where it hits",
         ),
         ("disc".to_owned(), true),
         (across, scale_axis()),

@@ -23,7 +23,7 @@ pub fn maps(effort: u32) -> Vec<Map> {
             Map::measure(
                 (
                     MapSubject::Sphere,
-                    "hit where the ray passes by, or missed where it hits",
+                    "hit where the ray passes by or missed where it hits",
                 ),
                 (
                     method.id.to_owned(),
