@@ -20,6 +20,8 @@ mod thickness;
 
 mod smooth;
 
+mod oriented_box;
+
 mod packed_mesh;
 
 mod meshes;
@@ -79,6 +81,7 @@ pub use hit_order::HitOrder;
 pub use lights::PointLight;
 pub use materials::{Material, Surface, exponent};
 pub use needs::{ACCELERATOR, Need, needs};
+pub use oriented_box::OrientedBox;
 pub use pack::Plan;
 pub use packed_mesh::{MeshInstance, PackedMesh};
 pub use precision::{is_double, is_filtered};

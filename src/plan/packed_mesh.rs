@@ -13,6 +13,7 @@ use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
 use super::components::{first_of_components, volume};
+use super::oriented_box::OrientedBox;
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::measures;
 use crate::mesh::Triangles;
@@ -36,6 +37,8 @@ pub struct PackedMesh<R> {
     pub longest: R,
     /// The tree over the triangles.
     pub bvh: Bvh<R>,
+    /// A box that lies along the mesh, if that is much smaller than the axis-aligned one.
+    pub oriented: Option<OrientedBox<R>>,
     /// The greatest distance of a corner from the middle of the bounding box.
     pub reach: R,
     /// For each triangle, the indices of its corners in the source; empty if the triangles are not in the order
@@ -181,6 +184,7 @@ impl PackedMesh<f64> {
             lift: largest_lift(&triangles, &smooth),
             longest: longest(&triangles),
             reach: reach(&triangles, bvh.bounds.ball().0),
+            oriented: OrientedBox::around(&triangles, &bvh.bounds),
             smooth,
             faces: faces.into(),
             component_firsts,
@@ -256,6 +260,7 @@ impl<R: Real> PackedMesh<R> {
             lift: largest_lift(&triangles, &smooth),
             longest: longest(&triangles),
             reach: reach(&triangles, bvh.bounds.ball().0),
+            oriented: OrientedBox::around(&triangles, &bvh.bounds),
             triangles,
             smooth,
             bvh,

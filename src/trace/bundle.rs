@@ -159,6 +159,13 @@ impl<L: SimdFloat> Bundle<L> {
         let slack = L::Real::ONE + roundings::<L::Real>();
         near.at_most(far * reach.like(slack)) & self.active
     }
+
+    /// Margin around the origins for rounding and blur, along every axis.
+    #[inline(always)]
+    pub fn margin(&self) -> L {
+        let [below, above] = &self.origins;
+        (above.x - below.x) * below.x.like_f64(0.5)
+    }
 }
 
 impl<L: SimdFloat> Bundle<L> {

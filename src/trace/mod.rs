@@ -34,6 +34,8 @@ mod paths;
 
 mod doubt;
 
+mod slender;
+
 mod scan;
 
 mod intersect;

@@ -6,11 +6,12 @@ use super::bundle::Bundle;
 use super::candidates::Candidates;
 use super::entry_points::EntryPoints;
 use super::paths::Paths;
+use super::slender::lanes_meeting_oriented_box;
 use super::thin_margin::ThinMargin;
 use super::walk::{Stack, TreeVisitor, walk, walk_thin};
 use crate::plan::{Child, CulledFaces, Geometry, PackedMesh, Plan};
 use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
-use crate::simd::{SimdFloat, Vec3};
+use crate::simd::{Mask as _, SimdFloat, Vec3};
 
 /// A test to run on many primitives.
 pub trait Test<L: SimdFloat> {
@@ -219,6 +220,7 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
             culled_faces,
             active,
             margin,
+            is_boxed,
             ..
         } = self.tree_scan;
         let instance = &geometry.meshes[mesh];
@@ -235,6 +237,16 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
             return;
         };
         let bundle = self.bundle.seen_from(instance.centre);
+        if let Some(oriented) = &instance.mesh.oriented
+            && *is_boxed
+        {
+            let margin = bundle.margin();
+            let is_met = lanes_meeting_oriented_box(&paths.rays, margin, oriented, width);
+            if !(is_met & active).any() {
+                self.test.leave_mesh();
+                return;
+            }
+        }
         let mut faces = FaceVisitor {
             mesh: &instance.mesh,
             culled_faces: culled_faces.get(mesh).and_then(Option::as_deref),
