@@ -110,6 +110,29 @@ fn exhibition() -> Scene {
     scene
 }
 
+/// The demo with slender meshes in all directions, which have oriented boxes.
+fn rods() -> Scene {
+    let mut scene = Scene::demo();
+    let ball = Mesh::of(icosphere(1.0));
+    let mut dice = random::Dice(64);
+    for number in 0..40 {
+        let [mut place, mut turn] = [DVec3::ZERO; 2];
+        for axis in 0..3 {
+            place[axis] = dice.real(-60.0, 60.0);
+            turn[axis] = dice.real(0.0, 360.0);
+        }
+        let rod = Mesh {
+            position: DVec3::new(140.0, 50.0, -90.0) + place,
+            rotation: turn,
+            scale: DVec3::new(0.5, 45.0, 0.5),
+            ..ball.clone()
+        };
+        let name = format!("Rod {number}");
+        scene.objects.push(Object::new(name, "sphere 2", rod));
+    }
+    scene
+}
+
 /// The same scene with every mesh separated into triangles.
 fn apart(scene: &Scene) -> Scene {
     let mut apart = scene.clone();
@@ -147,6 +170,7 @@ fn a_tree_changes_no_bit_and_no_ray() {
         (apart(&exhibition()), 0.25),
         (mirrors, 0.0),
         (crowd, 0.01),
+        (rods(), 0.0),
     ];
     for (number, (scene, other_rays)) in scenes.iter().enumerate() {
         for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
