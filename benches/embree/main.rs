@@ -17,7 +17,7 @@ use std::time::Instant;
 use glam::DVec3;
 use glint::export::{save_image, write_text};
 use glint::image::{Film, Image, render_into};
-use glint::lab::{Crowd, EngineKind, Figure, Growth, PictureLook};
+use glint::lab::{Crowd, Figure, Growth, PictureLook, RenderMethod};
 use glint::plan::{Planner, RenderRequest};
 use glint::scene::{Document, EXAMPLES, Plane, Projection, Sampling, Scene, Shape};
 use glint::trace::{RenderControl, Threads};
@@ -90,7 +90,7 @@ fn chart_growth(file: &Path) {
     let most = 1_000_000;
     let mut growth = Growth::new(SIDE, most)
         .with_povray()
-        .with(EngineKind::Embree, |scene| {
+        .with(RenderMethod::Embree, |scene| {
             by_embree(scene).map(|drawn| drawn.fastest())
         });
     while threads.run(|| growth.step()) {

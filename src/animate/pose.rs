@@ -128,8 +128,9 @@ pub fn motion_between(from: &Camera, to: &Camera) -> CameraChange {
     let (Some(a), Some(b)) = (from.basis(), to.basis()) else {
         return CameraChange::default();
     };
-    // For a rotation by an angle θ about any axis, the squared differences of the basis vectors add up to 8
-    // sin²(θ/2), and those of their sums to 8 cos²(θ/2) + 4. Unlike the trace, this is accurate for small angles.
+    // For a rotation by an angle θ about any axis, the squared lengths of the differences of corresponding basis
+    // vectors add up to 8 sin²(θ/2), and those of their sums to 8 cos²(θ/2) + 4. Unlike the trace, this is accurate
+    // for small angles.
     let axes = [
         (a.x_axis, b.x_axis),
         (a.y_axis, b.y_axis),

@@ -173,8 +173,8 @@ fn new_pack(color: [f64; 3]) -> ColorPack {
     }
 }
 
-/// Returns the name of an unused color pack that is the default one, or a new one in one of these colours. Other
-/// unused ones are left alone: the user may have made them for later.
+/// Returns the name of an unused color pack that nobody has edited: with the default values, or with those of a new
+/// object's pack in one of these colours. Other unused ones are left alone: the user may have made them for later.
 fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
     let used = scene.used_packs();
     let is_new = |pack: &ColorPack| {

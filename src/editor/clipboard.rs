@@ -22,7 +22,7 @@ const MIN_ROW_DEPTH_SHARE: f64 = 0.05;
 
 /// Returns a scene of the selected things alone, with the color packs that they use and the tracks that animate them.
 pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
-    let indices_of = |kind| selected.places(kind).into_iter();
+    let indices_of = |kind| selected.indices(kind).into_iter();
     let objects =
         indices_of(ItemKind::Object).filter_map(|index| scene.objects.get(index).cloned());
     let lights = indices_of(ItemKind::Light).filter_map(|index| scene.lights.get(index).cloned());

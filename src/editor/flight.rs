@@ -34,7 +34,7 @@ impl Editor {
             Time::Stretched(from, by) => timeline.stretch(from, by),
             Time::Step(frames) => {
                 let frame = animation.frame_at(timeline.playhead);
-                // A playhead beyond the end stays there.
+                // A playhead beyond the end steps back from where it is, but no farther ahead.
                 let last = animation.frame_count().max(frame);
                 let frame = frame.saturating_add_signed(frames).clamp(1, last);
                 timeline.is_playing = false;

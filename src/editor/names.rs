@@ -44,7 +44,7 @@ pub fn copy_offset(scene: &Scene, shape: &Shape) -> DVec3 {
     offset_to_free_place(scene, &new, (shape_copy_step(scene, shape), 1))
 }
 
-/// A place taken by a thing: others of its kind in the same place would be hidden by it.
+/// A place taken by a thing: others of its kind in the same place would shadow it, or be taken for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     /// The kind of the shape; `None` for lights.

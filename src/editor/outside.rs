@@ -143,15 +143,19 @@ impl Editor {
         let elsewhere = &elsewhere - &lost;
         let clause = |names: BTreeSet<&str>, why| {
             let names = names.into_iter().collect::<Vec<_>>().join(", ");
-            let text = format!("; the contents of {names} are in the scene file now: {why}");
+            let text =
+                format!("; the contents of {names} are in the scene file now, because {why}");
             if names.is_empty() {
                 String::new()
             } else {
                 text
             }
         };
-        clause(lost, "missing, or no longer readable")
-            + &clause(elsewhere, "in another folder, and no longer followed")
+        clause(lost, "they are missing or no longer readable")
+            + &clause(
+                elsewhere,
+                "they are in another folder, and are no longer followed",
+            )
     }
 
     /// Returns a copied part of the scene with the current contents of mesh files.

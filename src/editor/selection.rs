@@ -160,11 +160,11 @@ impl Selection {
     }
 
     /// Indices of the selected items of a kind, in ascending order.
-    pub fn places(&self, kind: ItemKind) -> Vec<usize> {
+    pub fn indices(&self, kind: ItemKind) -> Vec<usize> {
         let of_this_kind = self.of_kind(kind).into_iter();
-        let mut places: Vec<usize> = of_this_kind.map(|item| item.index).collect();
-        places.sort_unstable();
-        places
+        let mut indices: Vec<usize> = of_this_kind.map(|item| item.index).collect();
+        indices.sort_unstable();
+        indices
     }
 
     /// Whether the item is selected.
@@ -249,7 +249,7 @@ impl Selection {
                 Self::all(items.last().copied().filter(exists))
             }
             Self::Keys(mut keys) => {
-                keys.retain(|place| scene.animation.at_place(*place).is_some());
+                keys.retain(|place| scene.animation.time_and_pace_of(*place).is_some());
                 keys.into()
             }
             other => other,
@@ -261,7 +261,7 @@ impl Selection {
     /// cannot be followed if their number or their tracks have changed: then the camera is selected.
     #[must_use]
     pub fn followed(&self, from: &Scene, to: &Scene) -> Self {
-        if matches!(self, Self::Keys(_)) && !to.animation.has_places_of(&from.animation) {
+        if matches!(self, Self::Keys(_)) && !to.animation.has_same_keys_as(&from.animation) {
             return Self::Camera;
         }
         let stays = |item: &Item| item.name(from) == item.name(to);

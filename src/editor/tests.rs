@@ -401,7 +401,8 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
     assert_eq!(editor.scene().mesh_problems().count(), 1);
     editor.save(&there.path().join("s.ron")).expect("saved");
     let said = &editor.messages.last().expect("a message").text;
-    let lost = "the contents of roof.obj are in the scene file now: in another folder";
+    let lost =
+        "the contents of roof.obj are in the scene file now, because they are in another folder";
     assert!(said.contains(lost), "{said}");
     assert_eq!(editor.scene().mesh_problems().count(), 0);
     assert_eq!(editor.scene().mesh_paths().len(), 1);

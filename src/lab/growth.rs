@@ -36,7 +36,7 @@ pub enum Crowd {
 /// How a picture is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum EngineKind {
+pub enum RenderMethod {
     /// One sample per pixel.
     Plain,
     /// With clean edges.
@@ -53,7 +53,7 @@ pub struct Cost {
     /// The content of the scene.
     pub crowd: Crowd,
     /// How the picture was made.
-    pub way: EngineKind,
+    pub way: RenderMethod,
     /// Number of primitives.
     pub primitives: u32,
     /// Milliseconds of the fastest run, without planning.
@@ -77,7 +77,7 @@ enum Renderer {
 pub struct Growth {
     side: u32,
     max_primitives: u32,
-    renderers: Vec<(EngineKind, Renderer)>,
+    renderers: Vec<(RenderMethod, Renderer)>,
     /// The results so far.
     pub costs: Vec<Cost>,
     /// Why engines were left out.
@@ -91,8 +91,8 @@ impl Growth {
             side,
             max_primitives,
             renderers: vec![
-                (EngineKind::Plain, Renderer::Glint(Sampling::Centres)),
-                (EngineKind::Clean, Renderer::Glint(Sampling::ADAPTIVE)),
+                (RenderMethod::Plain, Renderer::Glint(Sampling::Centres)),
+                (RenderMethod::Clean, Renderer::Glint(Sampling::ADAPTIVE)),
             ],
             costs: Vec::new(),
             obstacles: Vec::new(),
@@ -101,11 +101,11 @@ impl Growth {
 
     /// Adds POV-Ray to the comparison.
     pub fn with_povray(self) -> Self {
-        self.with(EngineKind::Povray, povray)
+        self.with(RenderMethod::Povray, povray)
     }
 
     /// Adds another engine to the comparison.
-    pub fn with(mut self, way: EngineKind, engine: Engine) -> Self {
+    pub fn with(mut self, way: RenderMethod, engine: Engine) -> Self {
         self.renderers.push((way, Renderer::Other(engine)));
         self
     }
@@ -116,7 +116,7 @@ impl Growth {
     }
 
     /// All pictures in the order of measurement. Other engines come last; one that fails is left out.
-    fn cases(&self) -> impl Iterator<Item = (&(EngineKind, Renderer), Crowd, u32)> {
+    fn cases(&self) -> impl Iterator<Item = (&(RenderMethod, Renderer), Crowd, u32)> {
         let crowds = |renderer| [(renderer, Crowd::Mesh), (renderer, Crowd::Balls)];
         self.renderers
             .iter()
@@ -185,10 +185,10 @@ impl Cost {
             Crowd::Balls => "balls",
         };
         let way = match self.way {
-            EngineKind::Plain => "one sample",
-            EngineKind::Clean => "clean edges",
-            EngineKind::Povray => "POV-Ray",
-            EngineKind::Embree => "Embree",
+            RenderMethod::Plain => "one sample",
+            RenderMethod::Clean => "clean edges",
+            RenderMethod::Povray => "POV-Ray",
+            RenderMethod::Embree => "Embree",
         };
         format!("{crowd}, {way}")
     }
@@ -364,12 +364,16 @@ mod tests {
             _ => Err("no balls".to_owned()),
         };
         let mut growth = Growth::new(16, 100)
-            .with(EngineKind::Povray, draw)
-            .with(EngineKind::Embree, |_| Ok(2.0));
+            .with(RenderMethod::Povray, draw)
+            .with(RenderMethod::Embree, |_| Ok(2.0));
         while growth.step() {}
         let ways = growth.costs.iter().map(|cost| cost.way);
-        let [plain, clean, embree] =
-            [EngineKind::Plain, EngineKind::Clean, EngineKind::Embree].map(|way| [way, way]);
+        let [plain, clean, embree] = [
+            RenderMethod::Plain,
+            RenderMethod::Clean,
+            RenderMethod::Embree,
+        ]
+        .map(|way| [way, way]);
         assert_eq!(ways.collect::<Vec<_>>(), [plain, clean, embree].concat());
         assert_eq!(growth.obstacles, ["no balls"]);
         assert_eq!(growth.progress(), 1.0);

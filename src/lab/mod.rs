@@ -39,7 +39,7 @@ pub use clusters::{clusters, costs_of_choices};
 pub use explain::{Explanation, LightTerm, ShadingTerms, drawn, explain, first_hit, meet};
 pub use figure::{Figure, PictureLook};
 pub use finding::finding;
-pub use growth::{Cost, Crowd, EngineKind, Growth};
+pub use growth::{Cost, Crowd, Growth, RenderMethod};
 pub use kept::{keep, kept};
 pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, mean, trace_light};
 pub use pareto_front::{cheapest_within, closest_within, front};

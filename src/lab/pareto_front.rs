@@ -6,9 +6,9 @@ const MAX_ERROR_RATIO: f64 = 0.99;
 /// Returns the indices of the dots (cost, error), by cost, whose error is clearly less than that of every cheaper
 /// one. Dots with a number that is not finite are never on the front.
 pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
-    let has_finite_cost =
+    let is_finite =
         |&index: &usize| measurements[index].0.is_finite() && measurements[index].1.is_finite();
-    let mut indices: Vec<usize> = (0..measurements.len()).filter(has_finite_cost).collect();
+    let mut indices: Vec<usize> = (0..measurements.len()).filter(is_finite).collect();
     indices.sort_by(|&a, &b| {
         let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
         by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))

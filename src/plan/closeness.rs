@@ -11,7 +11,7 @@ const MIN_HEIGHT_PER_RADIUS: f64 = 1e-3;
 /// Least height of the eye above a plane, or of a light above anything flat, for single precision, as a share of
 /// the scene's extent: below it, rounding may put it on the other side.
 const MIN_HEIGHT_PER_EXTENT: f64 = 1e-5;
-/// The same for the eye above a disc or a triangle, which is narrow where it matters.
+/// The same for the eye above a disc or a triangle.
 const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
 /// Least distance of the eye or a light from the border of a piece for single precision without filtering, as a
 /// share of the size of the scene's bounded part: rounding then turns the line to the border by 1/5000. Of random

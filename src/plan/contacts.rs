@@ -39,7 +39,7 @@ pub struct Contacts {
     /// parallel rays, which start behind them.
     pub edge_on: ObjectIndices,
     /// The curved object on whose surface the eye is.
-    pub eye_primitive: Option<usize>,
+    pub eye_object: Option<usize>,
     /// The contacts of the lights.
     pub lights: Arc<LightContacts>,
     outside_tree: BTreeSet<usize>,
@@ -165,10 +165,10 @@ impl Contacts {
                     self.edge_on.push(index);
                 }
             } else if !is_parallel
-                && self.eye_primitive.is_none()
+                && self.eye_object.is_none()
                 && shape.height_per_radius(eye) <= ON_CURVED
             {
-                self.eye_primitive = Some(index);
+                self.eye_object = Some(index);
             }
         }
     }
@@ -201,7 +201,7 @@ impl Contacts {
             held_by, on_balls, ..
         } = &*self.lights;
         let lights = held_by.iter().flatten().chain(on_balls.iter().flatten());
-        let eye = self.edge_on.iter().chain(&self.eye_primitive).copied();
+        let eye = self.edge_on.iter().chain(&self.eye_object).copied();
         let holders: BTreeSet<usize> = lights.copied().chain(eye).collect();
         if holders.len() <= MOST_OUTSIDE_TREE {
             self.outside_tree = holders;

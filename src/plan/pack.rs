@@ -109,7 +109,7 @@ pub struct Plan<R> {
 /// Pixels added around every screen rectangle to cover the kernel's rounding.
 const MARGIN: f64 = 1.0;
 /// The same with adaptive sampling, where rays also look for things up to a pixel beside them: a pixel as wide as
-/// in the middle of the picture, where rays are closest together.
+/// in the middle of the picture, where rays are farthest apart.
 const SMOOTH_MARGIN: f64 = 4.0;
 
 impl<R: Real> Plan<R> {
@@ -176,7 +176,7 @@ impl<R: Real> Plan<R> {
         let is_outside = |index: &usize| contacts.outside_tree().contains(index);
         let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
-        plan.eye_primitive = contacts.eye_primitive.as_ref().and_then(number);
+        plan.eye_primitive = contacts.eye_object.as_ref().and_then(number);
         plan.find_ties(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
         let ball = |light: usize| {

@@ -224,7 +224,7 @@ impl Document {
     /// [`SceneError::Unwritable`]; no scene is known for which this happens.
     pub fn to_text(&self) -> Result<String, SceneError> {
         let scene = pretty(&self.scene)?;
-        // The animation's lists are as long as the scene's: it is laid out alike, and put last.
+        // The animation's lists are as long as the scene's: it is laid out in the same way, and put last.
         let animation = pretty(&self.scene.animation)?.replace('\n', "\n    ");
         let scene = scene.strip_suffix(')').unwrap_or(&scene);
         Ok(format!(

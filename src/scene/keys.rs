@@ -71,7 +71,7 @@ impl Animation {
     }
 
     /// Returns all keys, those of the camera first.
-    pub fn places(&self) -> Keys {
+    pub fn all_keys(&self) -> Keys {
         let tracks = self.tracks.iter().enumerate();
         let rows = tracks.map(|(track, row)| (Some(track), row.keys.len()));
         std::iter::once((None, self.keys.len()))
@@ -81,7 +81,7 @@ impl Animation {
     }
 
     /// Returns whether both animations have the same tracks, with equal numbers of keys.
-    pub fn has_places_of(&self, other: &Self) -> bool {
+    pub fn has_same_keys_as(&self, other: &Self) -> bool {
         let is_same =
             |(a, b): (&Track, &Track)| a.target == b.target && a.keys.len() == b.keys.len();
         let are_as_many =
@@ -90,7 +90,7 @@ impl Animation {
     }
 
     /// Returns the time of a key, and interpolation and easing after it; `None` if there is no such key.
-    pub fn at_place(&self, place: KeyId) -> Option<(f64, Pace)> {
+    pub fn time_and_pace_of(&self, place: KeyId) -> Option<(f64, Pace)> {
         match place.track {
             None => self.keys.get(place.index).map(time_and_pace),
             Some(track) => {
@@ -122,12 +122,14 @@ impl Animation {
 
     /// Returns the times of the first and the last of these keys, in seconds from the start.
     pub fn span_of(&self, places: &Keys) -> Option<(f64, f64)> {
-        let times = places.iter().filter_map(|place| self.at_place(*place));
+        let times = places
+            .iter()
+            .filter_map(|place| self.time_and_pace_of(*place));
         let spans = times.map(|(time, _)| (time, time));
         spans.reduce(|(first, last), (time, _)| (time.min(first), time.max(last)))
     }
 
-    /// Returns the animation with these keys, or copies of them, moved by `shift` seconds, and their new places.
+    /// Returns the animation with these keys, or copies of them, moved by `shift` seconds, and their new ids.
     /// The shift is limited so that none is before the start or after [`MAX_SECONDS`]. Each moved key replaces the
     /// one it lands on.
     pub fn with_moved(&self, places: &Keys, shift: f64, are_copies: bool) -> (Self, Keys) {
@@ -183,7 +185,7 @@ impl Animation {
     }
 
     /// Returns the indices of the tracks that animate any of the wanted targets, by target.
-    pub fn track_places<'t>(
+    pub fn track_indices<'t>(
         &self,
         wanted: impl IntoIterator<Item = &'t Target>,
     ) -> HashMap<&Target, usize> {
@@ -207,7 +209,7 @@ impl Animation {
         time: f64,
     ) -> Self {
         let values: Vec<_> = values.into_iter().collect();
-        let places = self.track_places(values.iter().map(|(target, _)| *target));
+        let places = self.track_indices(values.iter().map(|(target, _)| *target));
         let mut animation = self.clone();
         for (target, value) in values {
             let place = places.get(target).copied().unwrap_or_else(|| {

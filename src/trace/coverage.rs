@@ -9,8 +9,8 @@ use super::thresholds::{EDGE_ERROR, GAP_CONTRAST, PIXEL_STEPS, UNEVEN};
 use super::tile::TileColors;
 use crate::simd::Real;
 
-/// An edge that may stay located within more steps of the finest grid than this is so faint that its shape does not
-/// matter.
+/// Greatest uncertainty of an edge's position, in steps of the finest grid, at which its shape matters: an edge that
+/// may stay more uncertain is too faint.
 const FAINT_EDGE_STEPS: u16 = 2;
 /// Distances from an edge at which a sample checks whether it is straight, in multiples of the width within which
 /// the edge is located: the first of these is used whose nearest point of the finest grid is at least

@@ -103,7 +103,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         self.splat(0.0).less(L::load(self.token, &sums))
     }
 
-    /// Returns the mark of the caster that the paths pass deepest inside its outline; 0 where a caster hides the
+    /// Returns the mark of the caster inside whose outline the paths pass deepest; 0 where a caster hides the
     /// whole pixel, or there is none.
     #[inline(always)]
     fn deepest(
@@ -124,7 +124,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 }
 
-/// Looks for the caster that the paths pass deepest inside its outline.
+/// Looks for the caster inside whose outline the paths pass deepest.
 struct DepthTest<'a, L: SimdFloat> {
     methods: &'a Methods,
     /// Length of the paths.

@@ -12,8 +12,8 @@ use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
 /// The context that all kernels of a picture share: the SIMD token and the plan. Without `TREE`, kernels are
-/// compiled for plans that have no tree and track no doubt. These are faster, since values that may come from a list
-/// or from a tree are copied back and forth.
+/// compiled for plans that have no tree and track no doubt. These are faster: in the others, values that may come from
+/// a list or from a tree are copied back and forth.
 pub struct Kernel<'a, L: SimdFloat, const TREE: bool> {
     /// Proof that the processor supports these vectors.
     pub token: L::Token,

@@ -38,7 +38,7 @@ pub struct EdgeMessages {
 /// The messages to the pixels of a band.
 #[derive(Clone, Copy, Debug)]
 pub struct BandMessages<'a> {
-    /// All messages of the picture.
+    /// The messages of the picture, or of the strip, that the band belongs to.
     pub messages: &'a EdgeMessages,
     /// The pixels that have received messages, by row and column, if only these are traced.
     pub only_pixels: Option<&'a [[usize; 2]]>,

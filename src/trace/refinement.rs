@@ -133,7 +133,7 @@ impl<R: Real> Refinement<R> {
         self.divide_notified(tile, corners, colors);
     }
 
-    /// Divides the pixels that are near something thin; in the others, their quarters need not be searched for it.
+    /// Divides the pixels that are near something thin; the quarters of the others need not be searched for it.
     #[inline(never)]
     pub fn divide_near_thin(&mut self) {
         let (lattice, cells) = (&mut self.lattice, &mut self.cells);

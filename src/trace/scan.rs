@@ -53,7 +53,7 @@ pub trait Test<L: SimdFloat> {
         0
     }
 
-    /// Excludes these rays, bit by bit, from the tests that follow. Returns the rays that were excluded before.
+    /// Sets the rays, bit by bit, that are excluded from the tests that follow. Returns those excluded so far.
     fn exclude_lanes(&mut self, _merged_lanes: u64) -> u64 {
         0
     }

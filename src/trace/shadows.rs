@@ -17,8 +17,8 @@ const MARK_BITS: u32 = 5;
 /// Bits of what is seen directly; those of what is seen in a mirror are above them.
 const DIRECT_BITS: u32 = MARKED_LIGHTS as u32 * MARK_BITS;
 
-/// Returns what a light that shines adds to the sum of an edge. Each light whose shadows are noted has a power of
-/// two of its own, below those of all other lights, so that no sum of the others changes its bit.
+/// Returns what a light that shines adds to the sum of an edge. The lights whose shadows are noted have powers of two
+/// of their own, below those of all further lights, so that no sum of the latter changes their bits.
 #[inline(always)]
 pub fn light_bit(light: usize) -> f64 {
     let bit = if light < LIGHT_BITS {

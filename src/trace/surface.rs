@@ -148,7 +148,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 
     /// Returns how large the cosine between the normal of a surface and the unit direction to a light must be for
-    /// the surface to be lit, if the light may be level with it or on a ball: infinity where that ball blocks the
+    /// the surface to be lit, if the light may be in its plane or on a ball: infinity where that ball blocks the
     /// light. The light is at this distance; `shrink` is one over that.
     #[inline(always)]
     pub fn min_lit_cosine(

@@ -34,10 +34,8 @@ pub struct ThinQuery<'a, L: SimdFloat> {
     /// How fast a pixel widens along these rays or, for rays to a light, along those that have led there; curved
     /// mirrors make that more. The limits are multiples of the camera's own: rays with more than
     /// [`MAX_SPREAD_INTO_MESHES`] do not look into meshes, and rays to a light with more than [`MAX_SPREAD_TO_LIGHTS`]
-    /// look
-    /// for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and
-    /// other
-    /// rays above [`MAX_SPREAD_WHEN_CROWDED`].
+    /// look for nothing. In crowded scenes, rays to a light look for nothing above [`MAX_SPREAD_INTO_MESHES`], and
+    /// other rays above [`MAX_SPREAD_WHEN_CROWDED`].
     pub spread: L,
     /// How far they go.
     pub reach: L,

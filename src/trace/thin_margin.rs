@@ -4,7 +4,7 @@ use super::thresholds::THIN_WIDTH;
 use crate::primitive::CAUTION;
 use crate::simd::{Real, SimdFloat};
 
-/// How far before a box, in widths of a pixel, a ray may pass what is in it: discs the farthest.
+/// Greatest distance before a box, in widths of a pixel, at which a ray may pass what is in it; discs need the most.
 const APPROACH_WIDTHS: f64 = 4.0;
 
 /// Upper bound of the width of a pixel around rays, and how thick the things are that are looked for.
@@ -12,11 +12,11 @@ const APPROACH_WIDTHS: f64 = 4.0;
 pub struct ThinMargin<R> {
     /// Width where the rays start, in scene units.
     pub width: R,
-    /// Growth of the width at distance 1, in scene units per scene unit.
+    /// Growth of the width per unit of distance.
     pub spread: R,
     /// Thickness in widths of a pixel below which things are looked for.
     pub max_thickness: R,
-    /// How much narrower a pixel becomes at distance 1, at least, if it narrows along all of the rays; else 0.
+    /// How much narrower a pixel becomes per unit of distance, at least, if it narrows along all of the rays; else 0.
     pub narrowing: R,
     /// Least width in spite of narrowing, in scene units.
     pub min_width: R,

@@ -38,7 +38,7 @@ pub trait TreeVisitor<L: SimdFloat> {
     fn visit_merged_box(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
         0
     }
-    /// Excludes these rays, bit by bit, from everything that is visited from now on.
+    /// Sets the rays, bit by bit, that are excluded from everything that is visited from now on.
     fn exclude_lanes(&mut self, _merged_lanes: u64) {}
 }
 

@@ -23,7 +23,7 @@ pub fn toggle_visible(editor: &mut Editor) {
 
 /// Returns the selected objects or, if only a triangle is selected, all triangles connected to it by shared corners.
 pub fn objects_to_join(editor: &Editor) -> Vec<usize> {
-    let selected = editor.selection().places(ItemKind::Object);
+    let selected = editor.selection().indices(ItemKind::Object);
     match selected[..] {
         [triangle] => editor.scene().connected_triangles(triangle),
         _ => selected,
@@ -77,7 +77,7 @@ pub fn move_step(editor: &Editor, is_down: bool) -> Option<Edit> {
     let item = selection.item()?;
     match item.kind {
         ItemKind::Object => {
-            let moved = selection.places(ItemKind::Object);
+            let moved = selection.indices(ItemKind::Object);
             Arrangement::step(&scene.objects, &moved, is_down).map(Edit::Arrange)
         }
         kind => {

@@ -87,7 +87,7 @@ fn bodies(scene: &Scene, selected: &Selection) -> Vec<Vec<usize>> {
     }
     let mut bodies = Vec::new();
     let mut groups: IndexMap<&str, Vec<usize>> = IndexMap::new();
-    for index in selected.places(ItemKind::Object) {
+    for index in selected.indices(ItemKind::Object) {
         match scene.objects[index].group.as_str() {
             "" => bodies.push(vec![index]),
             group => groups.entry(group).or_default().push(index),

@@ -297,11 +297,11 @@ impl App {
             Command::Delete => return delete(editor),
             Command::ToggleVisible => return toggle_visible(editor),
             Command::Group => Action::Edit(Edit::Group(
-                editor.selection().places(ItemKind::Object),
+                editor.selection().indices(ItemKind::Object),
                 free_group_name(editor.scene(), "Group 1"),
             )),
             Command::Ungroup => {
-                let objects = editor.selection().places(ItemKind::Object);
+                let objects = editor.selection().indices(ItemKind::Object);
                 Action::Edit(Edit::Group(objects, String::new()))
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),

@@ -34,7 +34,7 @@ fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
     assert_eq!(new, [KeyId { track, index: 4 }].into());
     let nearest = animation.value_at(0, 1.15);
     assert_eq!(nearest, Some(third));
-    let none = animation.without_keys(&animation.places());
+    let none = animation.without_keys(&animation.all_keys());
     assert!(none.is_still());
 }
 
@@ -49,15 +49,15 @@ fn keys_of_the_camera_and_of_values_are_moved_and_paced_together() {
     let target = Target::AmbientIntensity;
     let animation = animation.with_value(&target, 0.5, Value::Number(0.3));
     let animation = animation.with_value(&target, 4.0, Value::Number(0.4));
-    let places: Keys = animation.places().into_iter().take(3).collect();
+    let places: Keys = animation.all_keys().into_iter().take(3).collect();
     // All keys move by the same amount, so that none is before the start.
     let (moved, new) = animation.with_moved(&places, -2.0, false);
     assert_eq!(new, places);
     let of_camera: Vec<f64> = moved.keys.iter().map(|key| key.time).collect();
     assert_eq!((of_camera, times(&moved)), (vec![0.5, 1.5], vec![0.0, 4.0]));
     let paced = animation.with_pace(&places, |(way, _)| *way = Interpolation::Hold);
-    let there = |place| paced.at_place(place);
-    let held = paced.places().into_iter().filter_map(there);
+    let there = |place| paced.time_and_pace_of(place);
+    let held = paced.all_keys().into_iter().filter_map(there);
     let held = held.filter(|(_, (way, _))| *way == Interpolation::Hold);
     let held: Vec<f64> = held.map(|(time, _)| time).collect();
     assert_eq!(held, [1.0, 2.0, 0.5]);

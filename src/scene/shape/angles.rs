@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 
-/// Largest step, in degrees, in which a rotation is tracked. Smaller steps could end in a gimbal lock, where two of
-/// the three angles turn about one axis and it is ambiguous which of them has changed.
+/// Largest step, in degrees, in which a rotation is tracked. It is this large because any intermediate step could end
+/// in a gimbal lock, where two of the three angles turn about one axis and it is ambiguous which of them has changed.
 const MAX_STEP: f64 = 90.0;
 /// Largest number of such steps: for larger rotations, the number of full turns is not meaningful.
 const MOST_STEPS: f64 = 4000.0;

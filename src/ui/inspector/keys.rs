@@ -31,7 +31,7 @@ const BASIC_INTERPOLATIONS: [Interpolation; 3] = [
 pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let Some(&first) = places.first() else { return };
-    let pace = animation.at_place(first).map(|(_, pace)| pace);
+    let pace = animation.time_and_pace_of(first).map(|(_, pace)| pace);
     let (Some(pace), Some((time, last))) = (pace, animation.span_of(places)) else {
         return;
     };
@@ -44,7 +44,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
         format!("{} keys in {} s", places.len(), format_number(span))
     };
     title(ui, icons::KEY, &name);
-    let paces = places.iter().filter_map(|place| animation.at_place(*place));
+    let paces = places
+        .iter()
+        .filter_map(|place| animation.time_and_pace_of(*place));
     let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
     let different = [
         (
@@ -134,8 +136,8 @@ pub fn report_replaced_keys(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     }
     let before_move: Option<BeforeMove> = ui.data_mut(|data| data.remove_temp(drag_id()));
-    let before = before_move.map_or(0, |before_move| before_move.animation.places().len());
-    let replaced = before.saturating_sub(editor.scene().animation.places().len());
+    let before = before_move.map_or(0, |before_move| before_move.animation.all_keys().len());
+    let replaced = before.saturating_sub(editor.scene().animation.all_keys().len());
     out.actions
         .extend(replaced_keys_message(replaced).map(Action::Tell));
 }
@@ -263,7 +265,7 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         out.edit(Edit::animation(changed, "Overwrite key"));
     }
     let go = ui.add_enabled(only.is_some(), Button::new("Go there"));
-    let timed_key = only.and_then(|only| animation.at_place(*only));
+    let timed_key = only.and_then(|only| animation.time_and_pace_of(*only));
     if go.hint("Move the playhead to this key").clicked()
         && let Some((time, _)) = timed_key
     {
@@ -314,7 +316,7 @@ pub fn key_buttons(ui: &mut Ui, editor: &Editor, values: &[KeyableValue], out: &
     }
     let animation: &Animation = &editor.scene().animation;
     let time = editor.shown_time();
-    let places = animation.track_places(values.iter().flat_map(|(_, targets)| targets));
+    let places = animation.track_indices(values.iter().flat_map(|(_, targets)| targets));
     let key_of = |target: &Target| animation.value_at(*places.get(target)?, time);
     ui.horizontal(|ui| {
         ui.weak("Keys");

@@ -7,7 +7,7 @@ use super::super::theme::{GRID, palette};
 use super::axes::{decades, plain};
 use super::pictures::picture;
 use crate::image::Image;
-use crate::lab::{Cost, Crowd, EngineKind, Growth, PictureLook};
+use crate::lab::{Cost, Crowd, Growth, PictureLook, RenderMethod};
 
 /// Distance of a line's name above or below its end, in decades.
 const NAME_OFFSET: f64 = 0.06;
@@ -25,20 +25,20 @@ pub fn growth_picture(growth: &Growth, look: PictureLook) -> Image {
 
 /// The heading, which sums up the chart.
 fn finding(growth: &Growth) -> String {
-    let first_and_last = |way: EngineKind| {
+    let first_and_last = |way: RenderMethod| {
         let mut costs = growth.costs.iter();
         let is_of_line = |cost: &&Cost| cost.crowd == Crowd::Mesh && cost.way == way;
         let first = costs.find(is_of_line)?;
         let last = costs.rfind(is_of_line)?;
         Some((first, last, last.ms / first.ms))
     };
-    let Some((first, last, ratio)) = first_and_last(EngineKind::Plain) else {
+    let Some((first, last, ratio)) = first_and_last(RenderMethod::Plain) else {
         return "Time against primitives".to_owned();
     };
     let preparation = last.plan_ms;
     let preparation =
         preparation.map(|ms| format!(" (plus {:.1} s once, to prepare the mesh)", ms / 1e3));
-    let embree = first_and_last(EngineKind::Embree)
+    let embree = first_and_last(RenderMethod::Embree)
         .map(|(.., ratio)| format!(", with Embree {ratio:.1} times"));
     format!(
         "From {} to {} faces, a picture takes {ratio:.1} times as long{}{}",
@@ -82,10 +82,10 @@ fn show(ui: &mut Ui, growth: &Growth) {
                     Crowd::Balls => colors.text,
                 };
                 let style = match cost.way {
-                    EngineKind::Plain => LineStyle::Solid,
-                    EngineKind::Clean => LineStyle::dashed_loose(),
-                    EngineKind::Povray => LineStyle::dotted_dense(),
-                    EngineKind::Embree => LineStyle::dotted_loose(),
+                    RenderMethod::Plain => LineStyle::Solid,
+                    RenderMethod::Clean => LineStyle::dashed_loose(),
+                    RenderMethod::Povray => LineStyle::dotted_dense(),
+                    RenderMethod::Embree => LineStyle::dotted_loose(),
                 };
                 let dots = Points::new(name.clone(), PlotPoints::from(points.clone()));
                 plot.points(dots.radius(4.0).color(color));

@@ -137,7 +137,7 @@ fn dragged_items(editor: &Editor, item: Item) -> Vec<Item> {
 
 /// The same for an object, as indices.
 fn dragged_objects(editor: &Editor, item: Item) -> Vec<usize> {
-    Selection::Items(dragged_items(editor, item)).places(item.kind)
+    Selection::Items(dragged_items(editor, item)).indices(item.kind)
 }
 
 /// Returns whether all objects dragged with one item are in the same group as another item, or in none like it.

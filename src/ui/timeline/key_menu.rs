@@ -11,7 +11,8 @@ use crate::ui::requests::UiRequests;
 pub fn menu(ui: &mut Ui, place: KeyId, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
-    let Some((_, (current_interpolation, current_easing))) = animation.at_place(place) else {
+    let Some((_, (current_interpolation, current_easing))) = animation.time_and_pace_of(place)
+    else {
         return;
     };
     for interpolation in interpolations_for(editor, places, current_interpolation) {

@@ -58,8 +58,8 @@ impl KeyDrag {
         } else {
             0
         };
-        let before = self.before.places().len() + copies;
-        let replaced = before.saturating_sub(now.places().len());
+        let before = self.before.all_keys().len() + copies;
+        let replaced = before.saturating_sub(now.all_keys().len());
         replaced_keys_message(replaced).filter(|_| *now != *self.before)
     }
 }
@@ -203,7 +203,7 @@ impl KeyRows {
         out: &mut UiRequests,
     ) {
         let animation = &editor.scene().animation;
-        let Some((time, (interpolation, _))) = animation.at_place(place) else {
+        let Some((time, (interpolation, _))) = animation.time_and_pace_of(place) else {
             return;
         };
         let near = Rect::from_center_size(at, vec2(2.0 * KEY_HALF_WIDTH + 2.0, TRACK));

@@ -327,8 +327,8 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
         return vec![Action::Tell(message.to_owned())];
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
-    let added = places.len() + animation.places().len();
-    let replaced = added.saturating_sub(changed.places().len());
+    let added = places.len() + animation.all_keys().len();
+    let replaced = added.saturating_sub(changed.all_keys().len());
     let made = [
         Action::Edit(Edit::animation(changed, "Copy keys")),
         Action::Select(new.into()),
@@ -371,7 +371,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
         }
         Command::Record => time_action(Time::Record),
         Command::StopRecording => time_action(Time::Stop),
-        Command::SelectKeys => vec![Action::Select(animation.places().into())],
+        Command::SelectKeys => vec![Action::Select(animation.all_keys().into())],
         Command::LookThrough => time_action(Time::LookThrough(!editor.looks_through())),
         Command::Duplicate => copied_keys(editor),
         Command::AddKey => {

@@ -575,7 +575,10 @@ fn several_packs_are_changed_as_one() {
     let last = harness.window.get_by_label("plane");
     last.click_modifiers(CTRL);
     harness.settle();
-    assert_eq!(harness.editor().selection().places(ItemKind::Pack).len(), 2);
+    assert_eq!(
+        harness.editor().selection().indices(ItemKind::Pack).len(),
+        2
+    );
     harness.type_into("phong", "64");
     for (name, exponent) in [("sphere 1", 64.0), ("plane", 64.0)] {
         let pack = &harness.scene().color_packs[name];
