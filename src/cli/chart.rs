@@ -258,9 +258,9 @@ fn simulate_cores(
     }
     for picture in &pictures {
         say(&format!(
-            "{:<20} {:>4} cores, {:>4} pieces {:>9.3} ms, {:>3.0} % busy",
+            "{:<20} {:>9}, {:>4} pieces {:>9.3} ms, {:>3.0} % busy",
             picture.scene,
-            picture.workers,
+            counted(picture.workers, "core"),
             picture.pieces,
             picture.ms,
             picture.efficiency * 100.0

@@ -56,11 +56,11 @@ impl Choice {
         let goal = match (self.goal, self.is_met) {
             (Goal::Within(error), true) => format!("the cheapest within {}", level(error)),
             (Goal::Within(error), false) => {
-                format!("the most accurate; none is within {}", level(error))
+                format!("the most accurate, as none reaches {}", level(error))
             }
             (Goal::Budget(time), true) => format!("the most accurate within {}", millis(time)),
             (Goal::Budget(time), false) => {
-                format!("the cheapest; none is within {}", millis(time))
+                format!("the cheapest, as none takes less than {}", millis(time))
             }
         };
         format!(

@@ -221,7 +221,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     ViewFront [ctrl(Key::Num1)] "View from the front",
     ViewRight [ctrl(Key::Num3)] "View from the right",
     ViewTop [ctrl(Key::Num7)] "View from above",
-    Escape [plain(Key::Escape)] "Cancel what is in progress; then deselect",
+    Escape [plain(Key::Escape)] "Cancel, deselect, back to live, quit",
     Leave(Next::New) [ctrl(Key::N)] "New scene",
     Leave(Next::Choose) [ctrl(Key::O)] "Open a scene",
     Ask(Ask::SaveScene) [ctrl_shift(Key::S)] "Save under another name",

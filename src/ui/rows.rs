@@ -70,25 +70,25 @@ impl<'u> FieldRows<'u> {
     /// Adds a row with a number.
     pub fn number(&mut self, field: &Field, value: &mut f64) {
         let (before, mut is_chosen) = (*value, false);
-        row(
-            self.ui,
-            field,
-            &format_number(field.default),
-            |ui, reset| {
-                if reset {
-                    *value = field.default;
-                }
-                let number = Number {
-                    field,
-                    name: field.name,
-                    width: ui.available_width(),
-                    size: 0.0,
-                    pasted: None,
-                    axis: None,
-                };
-                is_chosen = drag(ui, &number, value) || reset;
-            },
-        );
+        // Computed defaults have more digits than anybody reads.
+        let default = match field.default {
+            small if small.abs() < 1.0 => small,
+            default => (default * 1e4).round() / 1e4,
+        };
+        row(self.ui, field, &format_number(default), |ui, reset| {
+            if reset {
+                *value = field.default;
+            }
+            let number = Number {
+                field,
+                name: field.name,
+                width: ui.available_width(),
+                size: 0.0,
+                pasted: None,
+                axis: None,
+            };
+            is_chosen = drag(ui, &number, value) || reset;
+        });
         self.note_change(field.name, *value != before);
         if is_chosen {
             let (field, part) = (field.name, None);

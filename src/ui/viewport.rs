@@ -226,7 +226,7 @@ pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
     let per_pixel = frame.cost.rays.total() as f64 / pixels;
     let edges = match frame.sampling {
         Sampling::Centres => "",
-        Sampling::Grid(_) | Sampling::Adaptive { .. } => " · smooth",
+        Sampling::Grid(_) | Sampling::Adaptive { .. } => " · clean edges",
     };
     let bounces = counted(scene.render.reflection_limit, "bounce");
     let objects = counted(scene.objects.len(), "object");

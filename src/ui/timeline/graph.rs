@@ -64,7 +64,7 @@ impl Graph {
                     ui.small(egui::RichText::new(format!("speed ≤ {fastest:.1}/s")).color(colors.curve));
                     ui.small(egui::RichText::new(format!("turn ≤ {sharpest:.0}°/s")).color(colors.muted));
                     if rough > 0 {
-                        let text = egui::RichText::new(counted(rough, "jump")).color(colors.accent);
+                        let text = egui::RichText::new(counted(rough, "abrupt change")).color(colors.accent);
                         ui.small(text).hint("Frames where speed or turn rate changes abruptly, or the view turns by more than 120° a second");
                     }
                 });
