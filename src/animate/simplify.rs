@@ -79,6 +79,7 @@ pub fn deviation(camera: &Camera, landmarks: &[Landmark]) -> f64 {
 pub fn simplify(take: &Take, landmarks: &[Vec<Landmark>], tolerance: f64) -> Simplified {
     let (cuts, jumps) = (cuts(take), jumps(take, landmarks));
     let edges: BTreeSet<usize> = cuts.union(&jumps).copied().collect();
+    let jump_count = jumps.difference(&cuts).count();
     let search = Search {
         take,
         // Jumps must not be smoothed.
@@ -94,8 +95,11 @@ pub fn simplify(take: &Take, landmarks: &[Vec<Landmark>], tolerance: f64) -> Sim
     let chosen = search.refined(chosen);
     let keys = search.keys(chosen.iter().copied());
     let worst = worst_deviation(&CameraPath::new(&keys), take, landmarks, ends_of(&keys));
-    let jumps = jumps.len();
-    Simplified { keys, worst, jumps }
+    Simplified {
+        keys,
+        worst,
+        jumps: jump_count,
+    }
 }
 
 /// Returns the cameras of a take, smoothed as far as the tolerance allows.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::path::unwound;
 use crate::scene::{
     Camera, Document, Key, MAX_SECONDS, Orientation, Projection, SAME_TIME, SceneError,
-    format_number,
+    format_number, header,
 };
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
@@ -183,7 +183,7 @@ pub fn to_text(keys: &[Key<Camera>]) -> Result<String, ron::Error> {
 /// [`TableError`], with the line.
 pub fn from_text(text: &str) -> Result<Vec<Key<Camera>>, TableError> {
     let text = text.trim_start_matches('\u{feff}');
-    let is_list = text.trim_start().starts_with('[');
+    let is_list = text[header(text).len()..].trim_start().starts_with('[');
     if !is_list {
         let document = Document::from_text(text).map_err(|error| match error {
             SceneError::Refused(refusal) => TableError {

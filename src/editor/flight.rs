@@ -242,7 +242,7 @@ impl Editor {
         self.animation_state.timeline.playhead = 0.0;
         self.animation_state.timeline.stays_outside = false;
         self.show_time();
-        self.notify(format!(
+        self.notify_of_step(format!(
             "{count} samples became {key_count}{replaced}, never more than {worst:.1} px off at 1024²{jumps}"
         ));
     }

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::item::{Item, ItemKind};
-use crate::scene::{Keys, Object, Scene};
+use crate::scene::{Keys, Object, Scene, Target};
 
 /// The selected things, which the inspector shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -214,7 +214,18 @@ impl Selection {
     pub fn pivot(&self, scene: &Scene) -> Option<DVec3> {
         match self.only_placed() {
             Some(item) if item.kind == ItemKind::Object => {
-                Some(scene.objects.get(item.index)?.shape.pivot())
+                let Object { name, shape, .. } = scene.objects.get(item.index)?;
+                let tracks = &scene.animation.tracks;
+                let has = |target: Target| tracks.iter().any(|track| track.target == target);
+                // Rotation keys turn a mesh about its position. About any other point, it would have to move as well,
+                // which without keys of the position moves it at all times.
+                let has_rotation_alone = has(Target::ObjectRotation(name.clone()))
+                    && !has(Target::ObjectPosition(name.clone()));
+                Some(if has_rotation_alone {
+                    shape.position()
+                } else {
+                    shape.pivot()
+                })
             }
             _ => self.middle(scene),
         }

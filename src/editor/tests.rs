@@ -2,8 +2,10 @@ use glam::DVec3;
 
 use super::action::STEP;
 use super::*;
-use crate::scene::{Animation, Document, Scene, Target, Value, check};
-use crate::scene::{Shape, Sphere};
+use crate::mesh::Triangles;
+use crate::scene::{
+    Animation, Document, Mesh, Object, Scene, Shape, Sphere, Target, Track, Value, check,
+};
 use proptest::prelude::*;
 
 fn radius_edit(editor: &Editor, radius: f64) -> Action {
@@ -366,6 +368,36 @@ fn what_is_selected_is_followed_by_its_name() {
     assert_eq!(names(&editor), ["Roof"]);
     editor.apply(Action::Undo);
     assert_eq!(names(&editor), ["Plane", "Roof"]);
+}
+
+/// About another point, each of the rotation's keys would also need one of the position.
+#[test]
+fn a_mesh_whose_rotation_alone_is_keyed_turns_about_its_position() {
+    let mut scene = Scene::demo();
+    let corners = [[10, 10, 10], [12, 10, 10], [10, 12, 10], [10, 10, 12]];
+    let points = corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+    let faces = vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+    let mesh = Mesh {
+        position: DVec3::new(500.0, 0.0, 0.0),
+        ..Mesh::of(Triangles::new(points.to_vec(), faces).expect("a mesh"))
+    };
+    let (position, middle) = (mesh.position, mesh.position + 11.0);
+    scene.objects.push(Object::new("Aside", "plane", mesh));
+    let item = Item::object(scene.objects.len() - 1);
+    let selection = Selection::Items(vec![item]);
+    let pivot = |scene: &Scene| selection.pivot(scene).expect("a pivot");
+    assert!(pivot(&scene).distance(middle) < 1e-9);
+    let track = |target: fn(String) -> Target| Track {
+        target: target("Aside".to_owned()),
+        keys: Vec::new(),
+    };
+    scene.animation_mut().tracks = vec![track(Target::ObjectRotation)];
+    assert_eq!(pivot(&scene), position);
+    scene
+        .animation_mut()
+        .tracks
+        .push(track(Target::ObjectPosition));
+    assert!(pivot(&scene).distance(middle) < 1e-9);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
-use super::names::Names;
+use super::names::{Names, without_number};
 use super::object::{Light, LightObj, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
@@ -91,6 +91,12 @@ impl Scene {
         }
         let created = packs.entry(wanted.clone()).or_default();
         if let Some((_, name)) = created.iter().find(|(other, _)| *other == pack) {
+            return name.clone();
+        }
+        let is_same = |(name, existing): &(&String, &ColorPack)| {
+            **existing == pack && without_number(name) == without_number(&wanted)
+        };
+        if let Some((name, _)) = self.color_packs.iter().find(is_same) {
             return name.clone();
         }
         let name = names.take(&wanted);
@@ -209,6 +215,8 @@ mod tests {
         let first = scene.add_parts(read_mesh_file(&path).expect("read").parts);
         let packs = [0, 1].map(|part| scene.objects[first + part].color_pack.as_str());
         assert_eq!(packs, ["red 2", "red 2"]);
+        let first = scene.add_parts(read_mesh_file(&path).expect("read").parts);
+        assert_eq!(scene.objects[first].color_pack, "red 2", "imported again");
     }
 
     #[test]

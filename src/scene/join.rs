@@ -61,7 +61,8 @@ impl Scene {
     }
 
     /// Replaces the triangles and meshes at these indices (ascending) by one mesh with the name and the color pack
-    /// of the first. Returns the index of the mesh, or `None` if any other shape is among them.
+    /// of the first. Returns the index of the mesh, or `None` if any other shape is among them, or a mesh whose file
+    /// could not be read.
     pub fn join(&mut self, joined: Vec<usize>) -> Option<usize> {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
@@ -75,6 +76,7 @@ impl Scene {
         for &index in &joined {
             match &self.objects.get(index)?.shape {
                 Shape::Triangle(triangle) => faces.push(triangle.corners().map(&mut number)),
+                Shape::Mesh(mesh) if mesh.source.problem().is_some() => return None,
                 Shape::Mesh(mesh) => {
                     smooth = smooth.max(mesh.smooth);
                     let corners = outer_corners(mesh);
@@ -206,9 +208,11 @@ fn outer_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use crate::scene::animation::Value;
-    use crate::scene::{Animation, check};
+    use crate::scene::{Animation, MeshSource, check};
 
     #[test]
     fn what_is_hidden_is_not_joined_unasked_and_hides_nothing() {
@@ -311,6 +315,7 @@ mod tests {
         let Shape::Mesh(mesh) = &mut scene.objects[2].shape else {
             panic!("a mesh");
         };
+        let joined = mesh.clone();
         (mesh.rotation, mesh.scale) = (DVec3::new(10.0, 20.0, 30.0), DVec3::new(-1.0, 2.0, 1.0));
         let (low, high) = scene.objects[2].shape.bounds().expect("it ends");
         assert_eq!(scene.join(vec![2, 3]), Some(2));
@@ -322,5 +327,14 @@ mod tests {
         let (new_low, new_high) = scene.objects[2].shape.bounds().expect("it ends");
         assert!(new_low.cmpge(low - 1e-9).all() && new_high.cmple(high + 1e-9).all());
         assert!((new_high - new_low).min_element() > 20.0);
+        // The reference to a file that is missing would be lost.
+        let gone = MeshSource::read_anew(Path::new("nowhere"), "gone.ply".to_owned());
+        let mesh = Mesh {
+            source: gone,
+            ..joined
+        };
+        scene.objects.push(Object::new("Gone", "plane", mesh));
+        let last = scene.objects.len() - 1;
+        assert_eq!(scene.join(vec![2, last]), None);
     }
 }

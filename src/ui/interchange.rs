@@ -53,7 +53,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
             if editor.changes(Action::Edit(edit)) {
                 let replaced = replaced.map_or(String::new(), |words| format!("; {words}"));
                 let keys = counted(count, "key");
-                editor.notify(format!("{keys} from {}{replaced}", path.display()));
+                editor.notify_of_step(format!("{keys} from {}{replaced}", path.display()));
             }
         }
         Err(error) => {

@@ -25,17 +25,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let has = items.any(|item| item.is_visible(editor.shown()).is_some());
             (!has).then_some("nothing that can be hidden is selected")
         }
-        Command::Join => {
-            // Selected lights are ignored.
-            let scene = editor.scene();
-            let items = editor.selection().of_kind(ItemKind::Object);
-            let mut shapes = items.iter().map(|item| shape_of(scene, *item));
-            let can = match items.len() {
-                1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
-                _ => shapes.all(|shape| matches!(shape, Some(Shape::Triangle(_) | Shape::Mesh(_)))),
-            };
-            (!can || items.is_empty()).then_some("select triangles or several meshes")
-        }
+        Command::Join => joining_obstacle(editor),
         Command::Separate => {
             let (scene, items) = (editor.scene(), editor.selection().items());
             let shape = match items {
@@ -105,6 +95,25 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
         }
         _ => None,
     }
+}
+
+/// Returns why the selected objects cannot be joined into a mesh; selected lights are ignored.
+fn joining_obstacle(editor: &Editor) -> Option<&'static str> {
+    let scene = editor.scene();
+    let items = editor.selection().of_kind(ItemKind::Object);
+    let mut shapes = items.iter().map(|item| shape_of(scene, *item));
+    let can = match items.len() {
+        1 => matches!(shapes.next(), Some(Some(Shape::Triangle(_)))),
+        _ => shapes.all(|shape| matches!(shape, Some(Shape::Triangle(_) | Shape::Mesh(_)))),
+    };
+    let is_unread = |item: &Item| {
+        let shape = shape_of(scene, *item);
+        matches!(shape, Some(Shape::Mesh(mesh)) if mesh.source.problem().is_some())
+    };
+    if items.iter().any(is_unread) {
+        return Some("the file of a selected mesh could not be read");
+    }
+    (!can || items.is_empty()).then_some("select triangles or several meshes")
 }
 
 /// Whether the command would do something now.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::scene::{Animation, Document, MAX_SECONDS, Take, Target, Track, Value};
+use crate::scene::{Animation, Document, Lens, MAX_SECONDS, Take, Target, Track, Value};
 
 /// A hand-flown take: uneven times, pauses, a wobble.
 fn take() -> Take {
@@ -122,6 +122,16 @@ fn a_hand_that_jumps_costs_a_few_keys_and_no_accuracy() {
     assert!(found.worst.deviation * 1024.0 <= 6.0, "{:?}", found.worst);
     assert!(found.keys.len() < 40, "{} keys", found.keys.len());
     assert_eq!(simplify(&calm, &self::seen(&calm), 6.0 / 1024.0).jumps, 0);
+    // A cut to another projection is no jump of the hand.
+    let mut cut = calm.clone();
+    let lens = cut.lenses[0];
+    cut.lenses.push(Lens {
+        from: 90,
+        projection: Projection::Orthographic,
+        ..lens
+    });
+    let found = simplify(&cut, &self::seen(&cut), 6.0 / 1024.0);
+    assert_eq!(found.jumps, 0);
     // Tapping a key turns the view for a few samples, between rests.
     let tapped = turned(&calm, |n| (n.clamp(20, 24) - 20) as f64 * 0.1);
     assert_eq!(
@@ -361,6 +371,10 @@ fn paths_survive_their_texts() {
     );
     assert_eq!(error.map_err(|error| error.line).err(), Some(5));
     assert_eq!(from_text("[\nKey(time: 0)]").expect_err("bad").line, 2);
+    let key = "[Key(time: 1, value: Camera())]";
+    let commented = format!("// my path\n/* by hand */ {key}");
+    assert_eq!(from_text(&commented), from_text(key));
+    assert!(from_text(key).is_ok());
 }
 
 #[test]
