@@ -244,7 +244,7 @@ mod tests {
         let exact = chosen(Goal::Within(1e-9));
         assert!(!exact.is_met && exact.rmse < 0.003, "{exact:?}");
         assert!(
-            exact.words().contains("none is within 180.0 dB"),
+            exact.words().contains("none reaches 180.0 dB"),
             "{}",
             exact.words()
         );
