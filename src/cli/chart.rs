@@ -258,7 +258,7 @@ fn simulate_cores(
     }
     for picture in &pictures {
         say(&format!(
-            "{:<20} {:>9}, {:>4} pieces {:>9.3} ms, {:>3.0} % busy",
+            "{:<20} {:>10}, {:>4} pieces {:>9.3} ms, {:>3.0} % busy",
             picture.scene,
             counted(picture.workers, "core"),
             picture.pieces,

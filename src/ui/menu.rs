@@ -148,7 +148,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
             entry(ui, text, command, out);
         }
     });
-    ui.menu_button("Bookmarks", |ui| bookmark_entries(ui, editor, out));
+    ui.menu_button("Bookmarked views", |ui| bookmark_entries(ui, editor, out));
     ui.separator();
     ui.menu_button("Show", |ui| {
         for (aspect, name, hint) in Aspect::EACH {

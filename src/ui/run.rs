@@ -417,7 +417,7 @@ fn add_bookmark(editor: &mut Editor) -> Action {
     let mut bookmarks = editor.scene().bookmarks.clone();
     let name = free_bookmark_name(&bookmarks, "View 1");
     editor.notify(format!(
-        "{name} is bookmarked; Bookmarks in the View menu returns to it"
+        "{name} is bookmarked; Bookmarked views in the View menu returns to it"
     ));
     let camera = editor.shown().camera.clone();
     bookmarks.push(Bookmark { name, camera });

@@ -202,7 +202,7 @@ fn a_bookmark_is_a_view_to_come_back_to() {
     harness.press(CTRL, Key::B);
     harness.press(CTRL, Key::Num7);
     assert_ne!(harness.scene().camera, before);
-    harness.choose("View", "Bookmarks");
+    harness.choose("View", "Bookmarked views");
     harness.click("View 1");
     assert_eq!(harness.scene().camera, before);
     // It is stored in the file, and listed in the inspector of the camera.
