@@ -14,7 +14,6 @@ use super::names::{Spot, offset_to_free_place, shape_copy_step};
 use super::selection::Selection;
 use crate::scene::{
     ColorPack, Document, List, Names, Owner, Owners, Scene, SceneError, Track, header, names_field,
-    without_number,
 };
 
 /// Least depth (z) of a row of objects, as a share of its length (x), for its copy to be placed in front of it.
@@ -173,15 +172,8 @@ fn paste_packs(scene: &mut Scene, pasted: &Scene, are_copies: bool) -> IndexMap<
     let mut taken = Names::new(scene.color_packs.keys().map(String::as_str));
     let mut names = IndexMap::new();
     for (name, pack) in pasted.color_packs.iter() {
-        let is_same = |existing: &(&String, &ColorPack)| {
-            existing.1 == pack && without_number(existing.0) == without_number(name)
-        };
-        let same_name = scene.color_packs.get_key_value(name);
-        let same_name = same_name.filter(|(_, existing)| *existing == pack);
-        let existing = same_name.or_else(|| scene.color_packs.iter().find(is_same));
-        let existing = existing
-            .filter(|_| !are_copies)
-            .map(|(name, _)| name.clone());
+        let existing = scene.pack_like(name, pack).filter(|_| !are_copies);
+        let existing = existing.map(str::to_owned);
         let name_in_scene = existing.unwrap_or_else(|| {
             let free = taken.take(name);
             scene.packs_mut().insert(free.clone(), pack.clone());

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
-use super::names::{Names, without_number};
+use super::names::Names;
 use super::object::{Light, LightObj, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
@@ -93,11 +93,8 @@ impl Scene {
         if let Some((_, name)) = created.iter().find(|(other, _)| *other == pack) {
             return name.clone();
         }
-        let is_same = |(name, existing): &(&String, &ColorPack)| {
-            **existing == pack && without_number(name) == without_number(&wanted)
-        };
-        if let Some((name, _)) = self.color_packs.iter().find(is_same) {
-            return name.clone();
+        if let Some(name) = self.pack_like(&wanted, &pack) {
+            return name.to_owned();
         }
         let name = names.take(&wanted);
         created.push((pack.clone(), name.clone()));

@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::material::ColorPack;
+use super::names::without_number;
 use super::whole::Scene;
 
 impl Scene {
@@ -30,6 +32,18 @@ impl Scene {
                 name.clone_into(&mut marker.color_pack);
             }
         }
+    }
+
+    /// Returns the name of a pack that is equal to `pack` and is called `name` or, if there is none, has a name that
+    /// differs from it by a number alone.
+    pub fn pack_like(&self, name: &str, pack: &ColorPack) -> Option<&str> {
+        let exact = self.color_packs.get_key_value(name);
+        let exact = exact.filter(|(_, existing)| *existing == pack);
+        let is_alike = |(other, existing): &(&String, &ColorPack)| {
+            *existing == pack && without_number(other) == without_number(name)
+        };
+        let found = exact.or_else(|| self.color_packs.iter().find(is_alike));
+        found.map(|(name, _)| &**name)
     }
 
     /// Returns whether two objects look the same where their surfaces coincide. Smooth meshes never do, because
