@@ -1,5 +1,6 @@
 //! The state of an animated scene at the playhead, and the timeline's effect on it.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::edit::Replaced;
@@ -235,9 +236,12 @@ impl AnimationState {
     }
 
     /// Sets a key at the shown time for each tracked value that the edit from `scene` to `next` has changed, or
-    /// overwritten, with something other than what is shown; in `next`, the scene's own value is restored. Returns
-    /// whether any key was set.
+    /// overwritten, with something other than what is shown; in `next`, the scene's own value is restored. A value
+    /// that loses its last key keeps what is shown. Returns whether any key was set.
     pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) -> bool {
+        if replaced.animation {
+            self.keep_unkeyed(scene, next);
+        }
         let time = self.timeline.shown_time(&next.animation);
         let targets: Vec<Target> = next
             .animation
@@ -268,6 +272,21 @@ impl AnimationState {
             }
         }
         is_any_keyed
+    }
+
+    /// Writes the shown value of each target that has a track in `scene`, but none in `next`, to `next`: what loses
+    /// its last key stays as it is seen.
+    fn keep_unkeyed(&self, scene: &Scene, next: &mut Scene) {
+        let kept = next.animation.tracks.iter().map(|track| &track.target);
+        let kept: HashSet<&Target> = kept.collect();
+        let before = scene.animation.tracks.iter().map(|track| &track.target);
+        let gone: Vec<&Target> = before.filter(|target| !kept.contains(target)).collect();
+        let owners = Owners::of(scene, gone.iter().copied());
+        for target in gone {
+            if let Some(value) = owners.get(&self.shown, target) {
+                owners.set(next, target, value);
+            }
+        }
     }
 }
 

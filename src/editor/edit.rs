@@ -97,12 +97,14 @@ pub enum EditError {
 }
 
 /// What an edit overwrites, regardless of the value that the keys show at the time: indices of objects and of lights,
-/// and the ambient intensity.
+/// the ambient intensity, and the animation.
 #[derive(Debug, Default)]
 pub struct Replaced {
     objects: HashSet<usize>,
     lights: HashSet<usize>,
     ambient: bool,
+    /// Whether the keys themselves are overwritten.
+    pub animation: bool,
 }
 
 impl Replaced {
@@ -111,6 +113,7 @@ impl Replaced {
             Edit::Object(index, ..) => drop(self.objects.insert(*index)),
             Edit::Light(index, ..) => drop(self.lights.insert(*index)),
             Edit::Ambient(_) => self.ambient = true,
+            Edit::Animation(..) => self.animation = true,
             Edit::Each(edits, _) => edits.iter().for_each(|edit| self.add(edit)),
             _ => {}
         }

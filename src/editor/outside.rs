@@ -76,6 +76,7 @@ impl Editor {
         let before = self.broken.len();
         let mut names = Vec::new();
         for read in read {
+            let read = self.scene.checked_read(read);
             let Some((folder, path)) = read.reference() else {
                 continue;
             };

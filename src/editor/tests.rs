@@ -4,7 +4,8 @@ use super::action::STEP;
 use super::*;
 use crate::mesh::Triangles;
 use crate::scene::{
-    Animation, Document, Mesh, Object, Scene, Shape, Sphere, Target, Track, Value, check,
+    Animation, Document, Easing, Interpolation, Key, Mesh, MeshSource, Object, Scene, Shape,
+    Sphere, Target, Track, Value, check,
 };
 use proptest::prelude::*;
 
@@ -449,4 +450,69 @@ fn saved_elsewhere_a_scene_tells_what_it_follows_no_more_and_looks_for_what_is_m
         .map(|(index, _)| index)
         .collect();
     assert_eq!(problems, [0]);
+}
+
+#[test]
+fn what_loses_its_last_key_stays_as_it_is_seen() {
+    let mut editor = Editor::demo();
+    let (light, before) = {
+        let light = &editor.scene().lights[0];
+        (light.name.clone(), light.position)
+    };
+    let lamp = |time, x| Key {
+        time,
+        value: Value::Point(before + DVec3::X * x),
+        interpolation: Interpolation::Linear,
+        easing: Easing::default(),
+    };
+    let track = Track {
+        target: Target::LightPosition(light),
+        keys: vec![lamp(0.0, 0.0), lamp(2.0, 10.0)],
+    };
+    let animation = Animation {
+        tracks: vec![track],
+        ..Animation::default()
+    };
+    editor.apply(Action::Edit(Edit::animation(animation, "Keys")));
+    editor.apply(Action::Time(Time::Seek(1.0)));
+    let seen = editor.shown().lights[0].position;
+    assert!(seen.distance(before) > 1.0);
+    let keys = editor.scene().animation.all_keys();
+    let first = keys.iter().copied().take(1).collect();
+    let edit = Edit::delete_keys(&editor.scene().animation, &first);
+    editor.apply(Action::Edit(edit));
+    assert_eq!(editor.scene().lights[0].position, before, "one key is left");
+    editor.apply(Action::Undo);
+    editor.apply(Action::Edit(Edit::delete_keys(
+        &editor.scene().animation,
+        &keys,
+    )));
+    assert_eq!(editor.scene().animation.tracks, []);
+    assert_eq!(editor.scene().lights[0].position, seen);
+    assert_eq!(editor.shown().lights[0].position, seen);
+    editor.apply(Action::Undo);
+    assert_eq!(editor.scene().lights[0].position, before);
+    assert_eq!(editor.shown().lights[0].position, seen);
+}
+
+#[test]
+fn a_mesh_file_that_grows_out_of_the_world_is_not_taken_over() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = |size: &str| format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n");
+    let write = |size| std::fs::write(folder.path().join("roof.obj"), mesh(size)).expect("written");
+    write("9");
+    let text = r#"Scene(version: 1, color_packs: {"a": ColorPack()}, lights: [], objects: [
+        Object(name: "roof", color_pack: "a", shape: Mesh(file: "roof.obj", scale: (1e9, 1e9, 1e9))),
+    ])"#;
+    let path = folder.path().join("s.ron");
+    std::fs::write(&path, text).expect("written");
+    let mut editor = Editor::demo();
+    editor.replace(Document::load(&path).expect("a scene"), Some(path));
+    let reread = || MeshSource::read_anew(folder.path(), "roof.obj".to_owned());
+    for (size, shown) in [("90", 90.0), ("9000", 90.0), ("8", 8.0)] {
+        write(size);
+        editor.take_meshes(vec![reread()]);
+        let (_, high) = editor.scene().objects[0].shape.bounds().expect("bounds");
+        assert_eq!(high.x, shown * 1e9, "{size}");
+    }
 }

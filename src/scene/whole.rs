@@ -250,6 +250,27 @@ impl Scene {
         referring.collect()
     }
 
+    /// Returns a mesh file that was read again; if it puts a mesh of this scene too far from the origin, as one that
+    /// could not be read.
+    pub fn checked_read(&self, read: MeshSource) -> MeshSource {
+        let with_new = self
+            .objects
+            .iter()
+            .filter_map(|object| match &object.shape {
+                Shape::Mesh(mesh) if mesh.source.reference() == read.reference() => {
+                    let mut new = Mesh {
+                        source: read.clone(),
+                        ..mesh.clone()
+                    };
+                    new.refuse_if_too_far();
+                    Some(new.source)
+                }
+                _ => None,
+            });
+        let refused = { with_new }.find(|source| source.problem().is_some());
+        refused.unwrap_or(read)
+    }
+
     /// Returns the scene with its mesh files replaced by newly read ones, except for those that can no longer be
     /// read; `None` if nothing changes.
     pub fn with_read(&self, read: &[MeshSource]) -> Option<Self> {

@@ -191,7 +191,7 @@ impl Files {
                 if running.is_some() {
                     *next = Next::QuitAnyway;
                 }
-                ask_about_changes(&ctx, &editor.title(), running)
+                ask_about_changes(&ctx, &editor.title(), next, running)
             }
             Prompt::Saving(_) if editor.is_making_keys() => Reply::Open,
             Prompt::Saving(_) => Reply::Yes,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use egui::text::{CCursor, CCursorRange};
 use egui::{Button, Context, Event, Frame, Id, InputState, Key, Modal, RichText, TextEdit, Ui};
 
+use super::commands::Next;
 use super::dialogs::Ask;
 use super::theme::{GRID, palette};
 use crate::files::make_folder;
@@ -29,11 +30,17 @@ pub enum Reply {
     Cancel,
 }
 
-/// Asks whether to save unsaved changes; `exports` describes exports that quitting would interrupt.
-pub fn ask_about_changes(ctx: &Context, title: &str, exports: Option<&str>) -> Reply {
+/// Asks whether to save unsaved changes before what comes next; `exports` describes exports that quitting would
+/// interrupt.
+pub fn ask_about_changes(ctx: &Context, title: &str, next: &Next, exports: Option<&str>) -> Reply {
+    let next = match next {
+        Next::New | Next::Example(_) => "starting another scene",
+        Next::Choose | Next::Open(_) => "opening another scene",
+        Next::Quit | Next::QuitAnyway => "quitting",
+    };
     let dialog = ("unsaved changes", 380.0, Reply::Yes);
     question(ctx, dialog, |ui, answer| {
-        ui.heading(format!("Save changes to {title}?"));
+        ui.heading(format!("Save changes to {title} before {next}?"));
         ui.add_space(GRID);
         ui.label("Without saving, the changes since the last save are lost.");
         show_running_exports(ui, exports);

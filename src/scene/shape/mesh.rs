@@ -186,7 +186,12 @@ impl Mesh {
     /// problem is stored with the reference and the mesh is empty.
     pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
         self.source.load(folder, files);
-        // The extent is known only now.
+        self.refuse_if_too_far();
+    }
+
+    /// Replaces the triangles of the mesh file by the reason why they are refused, if they lie too far from the
+    /// origin: the extent is known only once the file is read.
+    pub fn refuse_if_too_far(&mut self) {
         let too_far = self.problem();
         if let MeshSource::File {
             path,

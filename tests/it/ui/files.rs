@@ -150,7 +150,9 @@ fn unsaved_changes_are_asked_about() {
     );
     harness.press(Modifiers::NONE, Key::O);
     harness.press(Modifiers::COMMAND, Key::N);
-    harness.window.get_by_label("Save changes to demo?");
+    harness
+        .window
+        .get_by_label("Save changes to demo before starting another scene?");
     harness.click("Keep editing");
     assert!(harness.editor().is_dirty());
     harness.press(Modifiers::COMMAND, Key::N);
@@ -887,7 +889,9 @@ fn what_is_done_while_the_desktop_asks_is_asked_about() {
     assert!(harness.editor().is_dirty());
     dialogs.answer(&path);
     harness.settle();
-    harness.window.get_by_label("Save changes to demo?");
+    harness
+        .window
+        .get_by_label("Save changes to demo before opening another scene?");
     harness.click("Don't save");
     assert_eq!(harness.editor().path(), Some(path.as_path()));
     // The document that was to be saved is no longer open.
