@@ -18,7 +18,9 @@ use crate::primitive::{
     BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Tip, Visit,
     count_corner_users, number_corners,
 };
-use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
+use crate::scene::{
+    Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, around, coincidences,
+};
 use crate::simd::{Real, Vec3};
 
 /// Number of objects up to which testing those visible in a tile is faster than traversing a tree.
@@ -248,12 +250,9 @@ pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool
 
 /// Returns whether things with these bounds fill a space rather than a shallow field.
 fn fills_space(bounds: &[(DVec3, DVec3)]) -> bool {
-    let low = bounds
-        .iter()
-        .fold(DVec3::INFINITY, |low, one| low.min(one.0));
-    let high = bounds
-        .iter()
-        .fold(DVec3::NEG_INFINITY, |high, one| high.max(one.1));
+    let Some((low, high)) = around(bounds.iter().copied()) else {
+        return false;
+    };
     let sizes = bounds.iter().map(|(low, high)| {
         let [x, y, z] = (*high - *low).to_array();
         // The median of the three: a pole counts as no larger than it is wide.

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::primitive::{BoundingBox, PackedTriangle};
+use crate::scene::around;
 use crate::simd::{Real, Vec3};
 
 /// Largest surface of an oriented box that is worth a test, as a share of the surface of the axis-aligned box.
@@ -52,10 +53,8 @@ impl<R: Real> OrientedBox<R> {
         );
         let axes = DMat3::from_cols(along, across, along.cross(across));
         let into = axes.transpose();
-        let (low, high) = corners().map(|corner| into * corner).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), corner| (low.min(corner), high.max(corner)),
-        );
+        let turned = corners().map(|corner| into * corner);
+        let (low, high) = around(turned.map(|corner| (corner, corner)))?;
         let half = high * 0.5 - low * 0.5;
         let aligned = bounds.high.to_dvec3() * 0.5 - bounds.low.to_dvec3() * 0.5;
         (surface(half) < WORTH_TESTING * surface(aligned)).then(|| Self {

@@ -18,7 +18,7 @@ use super::smooth::{corner_normals, largest_lift};
 use super::thickness::measures;
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
-use crate::scene::Mesh;
+use crate::scene::{Mesh, around};
 use crate::simd::{Real, Vec3};
 
 /// The triangles of a mesh, rotated and scaled as in the world and relative to the middle of their bounding box:
@@ -99,10 +99,7 @@ impl Points {
             .collect();
         let named = source.faces().as_flattened().iter();
         let corners = named.map(|&corner| points[corner as usize]);
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = corners.fold(none, |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        });
+        let (low, high) = around(corners.map(|corner| (corner, corner))).unwrap_or_default();
         let middle = low * 0.5 + high * 0.5;
         for point in &mut points {
             *point -= middle;
