@@ -15,7 +15,8 @@ use super::cast::is_outside;
 use super::components::{first_of_components, volume};
 use super::oriented_box::OrientedBox;
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::measures;
+use super::thickness::thicknesses;
+use super::tips::tips;
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
 use crate::scene::{Mesh, around};
@@ -299,9 +300,10 @@ pub fn measure(
     bvh: &mut Bvh<f64>,
     borders: &Borders,
 ) {
-    let measures = measures(triangles, faces, bvh, borders);
-    let measured = measures.thicknesses.iter().zip(&measures.tips);
-    for (triangle, (&thickness, &tip)) in triangles.iter_mut().zip(measured) {
+    let thicknesses = thicknesses(triangles, bvh, borders);
+    let border_faces = borders.widths.iter().map(|&(face, _)| face);
+    let tips = tips(triangles, faces, border_faces);
+    for ((triangle, thickness), tip) in triangles.iter_mut().zip(thicknesses).zip(tips) {
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.tip = tip;
     }
