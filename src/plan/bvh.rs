@@ -267,11 +267,25 @@ impl<R: Real> Bvh<R> {
         }
     }
 
+    /// The members for whose boxes, and all boxes around these, a condition holds; in any order.
+    pub fn members_where(&self, mut holds: impl FnMut(&BoundingBox<R>) -> bool) -> Vec<u32> {
+        let (mut members, mut waiting) = (Vec::new(), vec![0_u32]);
+        while let Some(node) = waiting.pop().and_then(|node| self.nodes.get(node as usize)) {
+            for index in (0..node.count).filter(|&index| holds(&node.bounds(index))) {
+                match node.child(index) {
+                    Child::Member(member) => members.push(member),
+                    Child::Node(inner) => waiting.push(inner),
+                }
+            }
+        }
+        members
+    }
+
     /// The boxes of the root.
     pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
         let root = self.nodes.first();
         root.into_iter()
-            .flat_map(|root| (0..root.count).map(|index| root.get(index).bounds))
+            .flat_map(|root| (0..root.count).map(|index| root.bounds(index)))
     }
 }
 
