@@ -9,7 +9,7 @@ use obvhs::aabb::Aabb;
 
 pub use super::grouping::{Child, GROUP};
 use super::grouping::{WideNode, group_boxes};
-use crate::primitive::BoundingBox;
+use crate::primitive::{BoundingBox, PackedTriangle, Primitive as _};
 use crate::simd::{Real, Vec3};
 
 /// A node: up to [`GROUP`] boxes, one array per component, each of which fills a cache line. Single precision is
@@ -166,6 +166,16 @@ impl<R: Real> Member<R> {
         Self {
             bounds: self.bounds.union(&other.bounds),
             thickness: self.thickness.min(other.thickness),
+        }
+    }
+}
+
+impl Member<f64> {
+    /// A triangle as a member of a tree.
+    pub fn of(triangle: &PackedTriangle<f64>) -> Self {
+        Self {
+            bounds: BoundingBox::around(&triangle.corners),
+            thickness: triangle.thickness(),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::components::large_components;
 use super::contacts::LightContacts;
 use super::culled_faces::CulledFacesCache;
 use super::meshes::Meshes;
-use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
+use super::packed_mesh::{MeshInstance, PackedMesh, measure};
 use super::request::RenderRequest;
 use super::solids::faces_of_solids;
 use crate::primitive::{
@@ -407,7 +407,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, separate: &BTreeSe
         let own_triangles = group.iter().map(|&index| &primitives.triangles[index]);
         let mut triangles: Vec<_> = own_triangles.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);
-        let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
+        let mut bvh = Bvh::new(triangles.len(), |number| Member::of(&triangles[number]));
         let all = &triangles;
         let borders = Borders::of(
             &corners,

@@ -18,7 +18,7 @@ use super::smooth::{corner_normals, largest_lift};
 use super::thickness::thicknesses;
 use super::tips::tips;
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::{Mesh, around};
 use crate::simd::{Real, Vec3};
 
@@ -237,7 +237,7 @@ impl<R: Real> PackedMesh<R> {
             return None;
         }
         let mut bvh = self.bvh.in_precision();
-        bvh.refit(|number| member(&triangles[number]));
+        bvh.refit(|number| Member::of(&triangles[number]));
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
@@ -307,7 +307,7 @@ pub fn measure(
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.tip = tip;
     }
-    bvh.refit(|number| member(&triangles[number]));
+    bvh.refit(|number| Member::of(&triangles[number]));
 }
 
 /// The normals of faces that are shaded as one curved surface; empty if the mesh is flat.
@@ -335,14 +335,6 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
 fn longest<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
     let edges = triangles.iter().map(|triangle| triangle.longest);
     edges.fold(R::ZERO, R::max)
-}
-
-/// A triangle as a member of a tree.
-pub fn member(triangle: &PackedTriangle<f64>) -> Member<f64> {
-    Member {
-        bounds: BoundingBox::around(&triangle.corners),
-        thickness: Primitive::thickness(triangle),
-    }
 }
 
 impl<R: Real> MeshInstance<R> {

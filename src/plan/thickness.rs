@@ -113,20 +113,15 @@ impl Faces<'_> {
 mod tests {
     use super::*;
     use crate::plan::bvh::Member;
-    use crate::primitive::{BoundingBox, number_corners};
+    use crate::primitive::number_corners;
 
     fn found(corners: &[[Vec3<f64>; 3]]) -> Vec<f64> {
         let packed =
             |corners: &[Vec3<f64>; 3]| PackedTriangle::of_mesh(corners.map(Vec3::to_dvec3));
         let triangles: Vec<_> = corners.iter().filter_map(packed).collect();
-        let member = |triangle: &PackedTriangle<f64>| Member {
-            bounds: BoundingBox::around(&triangle.corners),
-            thickness: triangle.thickness,
-        };
-        let members: Vec<_> = triangles.iter().map(member).collect();
         let points = number_corners(&triangles);
         let borders = Borders::of(&points, |face| triangles[face as usize].corners, |_| 0);
-        let bvh = Bvh::new(members.len(), |n| members[n]);
+        let bvh = Bvh::new(triangles.len(), |n| Member::of(&triangles[n]));
         thicknesses(&triangles, &bvh, &borders)
     }
 
