@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::balls::{Balls, balls_of};
+use super::balls::Balls;
 use super::contacts::{Contacts, Tie};
 use super::culled_faces::CulledFaces;
 use super::flats::Flats;
@@ -76,8 +76,6 @@ pub struct Plan<R> {
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
     /// Balls around the bounded primitives of `primitives`.
     pub balls: Balls<R>,
-    /// The primitive number of each of these balls.
-    pub ball_numbers: Vec<u32>,
     /// For each triangle, whether it can be skipped for camera rays; empty if none can.
     pub camera_culled_faces: Vec<bool>,
     /// Numbers of primitives whose planes contain the eye, or the whole window from which parallel rays start.
@@ -148,7 +146,6 @@ impl<R: Real> Plan<R> {
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
             balls: Balls::default(),
-            ball_numbers: Vec::new(),
             camera_culled_faces: Vec::new(),
             edge_on: Vec::new(),
             unseen_faces: Vec::new(),
@@ -198,7 +195,7 @@ impl<R: Real> Plan<R> {
             plan.flats = Flats::of(&plan.primitives, plan.geometry.as_deref());
         }
         if may_cull {
-            plan.pack_balls();
+            plan.balls = Balls::around(&plan.primitives);
             // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
@@ -301,12 +298,6 @@ impl<R: Real> Plan<R> {
             screen[packed.kind as usize].push(rectangle);
         }
         Some(packed)
-    }
-
-    fn pack_balls(&mut self) {
-        let balls = balls_of(&self.primitives);
-        self.balls = Balls::new(balls.iter().map(|(_, ball)| ball));
-        self.ball_numbers = balls.iter().map(|&(number, _)| number).collect();
     }
 
     /// The geometry, with the number of its first primitive.

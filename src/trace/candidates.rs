@@ -193,7 +193,7 @@ impl Candidates {
         self.clear();
         let firsts = plan.primitives.firsts();
         for &ball in balls {
-            let number = plan.ball_numbers[ball as usize];
+            let number = plan.balls.numbers[ball as usize];
             let started_kinds = firsts.iter().filter(|&&first| first <= number as usize);
             let kind = started_kinds.count() - 1;
             let index = number - firsts[kind] as u32;
