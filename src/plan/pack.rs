@@ -176,17 +176,7 @@ impl<R: Real> Plan<R> {
         plan.eye_primitive = contacts.eye_object.as_ref().and_then(number);
         plan.find_ties(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
-        let ball = |light: usize| {
-            let ball = contacts.lights.on_balls.get(light).copied().flatten();
-            // If it is in the tree, rays test it like everything else.
-            ball.filter(|index| number(index).is_some())
-        };
-        let holders = |light: usize| {
-            let flat = contacts.lights.held_by.get(light).into_iter().flatten();
-            flat.chain(&ball(light)).filter_map(number).collect()
-        };
-        let touches = |light: usize| contacts.lights.touching.contains(&light);
-        let light_contacts = (touches, holders, ball);
+        let light_contacts = (&*contacts.lights, number);
         plan.lights = pack_lights(scene, centre, (occluders, model), light_contacts);
         plan.find_held_faces(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
