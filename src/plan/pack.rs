@@ -165,12 +165,12 @@ impl<R: Real> Plan<R> {
         let projector = projector.as_ref();
         if uses_tree(scene, request, may_cull) {
             let geometry =
-                cache.geometry(scene, (centre, contacts.outside_tree()), request.sampling);
+                cache.geometry(scene, (centre, &contacts.outside_tree), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
             plan.take_geometry(geometry, projector, centre);
         }
         let numbers = plan.pack(scene, &contacts, projector);
-        let is_outside = |index: &usize| contacts.outside_tree().contains(index);
+        let is_outside = |index: &usize| contacts.outside_tree.contains(index);
         let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_primitive = contacts.eye_object.as_ref().and_then(number);
@@ -180,7 +180,7 @@ impl<R: Real> Plan<R> {
         plan.lights = pack_lights(scene, centre, (occluders, model), light_contacts);
         plan.find_held_faces(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
-            let outside_tree = contacts.outside_tree().iter().filter_map(number).collect();
+            let outside_tree = contacts.outside_tree.iter().filter_map(number).collect();
             measure_loose(&mut plan.primitives, &outside_tree);
             plan.flats = Flats::of(&plan.primitives, plan.geometry.as_deref());
         }
@@ -221,7 +221,7 @@ impl<R: Real> Plan<R> {
         projector: Option<&Projector>,
     ) -> HashMap<usize, usize> {
         // With a tree, the only listed triangles are those that touch something.
-        let has_triangles = self.geometry.is_none() || !contacts.outside_tree().is_empty();
+        let has_triangles = self.geometry.is_none() || !contacts.outside_tree.is_empty();
         let (corner_users, faces_of_solids) = if has_triangles {
             (count_corner_users(scene), faces_of_solids(scene))
         } else {
@@ -236,27 +236,21 @@ impl<R: Real> Plan<R> {
         if scene.light_visualization {
             self.pack_markers(scene, &packing);
         }
-        let outside_tree = contacts.outside_tree();
+        let has_tree = self.geometry.is_some();
         let is_listed = |index: usize, object: &Object| {
-            let belongs_in_tree = self.geometry.is_some() && belongs_in_tree(object);
-            object.visible && (!belongs_in_tree || outside_tree.contains(&index))
+            let belongs_in_tree = has_tree && belongs_in_tree(object);
+            object.visible && (!belongs_in_tree || contacts.outside_tree.contains(&index))
         };
-        let objects = scene.objects.iter().enumerate();
-        let listed: Vec<_> = objects
-            .filter(|(index, object)| is_listed(*index, object))
-            .collect();
         let mut numbered = Vec::new();
-        for (index, object) in listed {
-            if contacts.covered.contains(&index) {
+        for (index, object) in scene.objects.iter().enumerate() {
+            if !is_listed(index, object) || contacts.covered.contains(&index) {
                 continue;
             }
             let material = material_number(scene, &object.color_pack);
             let packed = self.push(&object.shape, material, &packing);
-            numbered.extend(
-                packed
-                    .filter(|_| contacts.needs_number(index))
-                    .map(|packed| (index, packed)),
-            );
+            if let Some(packed) = packed.filter(|_| contacts.needs_number(index)) {
+                numbered.push((index, packed));
+            }
         }
         let firsts = self.primitives.firsts();
         let number = |packed: &Packed| firsts[packed.kind as usize] + packed.index;
