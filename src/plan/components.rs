@@ -2,6 +2,7 @@
 //! counter-clockwise, and components may differ.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
 use glam::DVec3;
 
@@ -45,13 +46,13 @@ pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]
 }
 
 /// Numbers the distinct values from 0, in the order of their first occurrence.
-fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
+pub fn numbered<K: Eq + Hash>(values: impl Iterator<Item = K>) -> Vec<u32> {
     let mut numbers = HashMap::new();
-    let number = |first| {
+    let number = |value| {
         let next = numbers.len() as u32;
-        *numbers.entry(first).or_insert(next)
+        *numbers.entry(value).or_insert(next)
     };
-    firsts.map(number).collect()
+    values.map(number).collect()
 }
 
 /// Returns the first face of each face's component; empty if there is at most one component.

@@ -16,7 +16,7 @@ use super::request::RenderRequest;
 use super::solids::faces_of_solids;
 use crate::primitive::{
     BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Tip, Visit,
-    count_corner_users, number_corners,
+    count_corner_users, number_corners, visible_triangles,
 };
 use crate::scene::{
     Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, around, coincidences,
@@ -230,8 +230,7 @@ pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool
         Accelerator::List => false,
         Accelerator::Bvh => true,
         Accelerator::Auto => {
-            let is_triangle = |object: &&Object| matches!(object.shape, Shape::Triangle(_));
-            let triangles = visible().filter(is_triangle);
+            let triangles = visible_triangles(scene);
             let bounded = visible().filter_map(|object| object.shape.bounds());
             let bounded: Vec<_> = bounded.take(LARGEST_LIST + 1).collect();
             let pixels_each = match request.sampling {

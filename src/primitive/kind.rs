@@ -14,7 +14,7 @@ use super::ray::Ray;
 use crate::scene::{Describe, Methods};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// The bits of a corner's coordinates.
+/// The bits of a corner's coordinates, see [`crate::mesh::position_key`].
 pub type Corner = [u64; 3];
 
 /// What packing needs to know about the scene.

@@ -36,6 +36,6 @@ pub use projector::{Extent, Projector, Rectangle};
 pub use ray::{Ray, inverse};
 pub use sphere::{PackedSphere, Round};
 pub use triangle::{
-    CornerNormals, Culling, Curved, Flat, PackedTriangle, Tip, Vertex, corner_key,
-    count_corner_users, number_corners,
+    CornerNormals, Culling, Curved, Flat, PackedTriangle, Tip, Vertex, count_corner_users,
+    number_corners, visible_triangles,
 };

@@ -14,7 +14,7 @@ pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::SHARES_PER_UNIT;
 pub use packed::{
-    Culling, PackedTriangle, Tip, Vertex, corner_key, count_corner_users, number_corners,
+    Culling, PackedTriangle, Tip, Vertex, count_corner_users, number_corners, visible_triangles,
 };
 use watertight::{Passing, Shear, watertight};
 
@@ -26,6 +26,7 @@ use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
+use crate::mesh::position_key;
 use crate::scene::{Methods, Triangle, TriangleMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
 
@@ -80,14 +81,17 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
         let Triangle { a, b, c } = *description;
         let normal = (c - a).cross(b - a).try_normalize()?;
-        let is_shared = |point: &DVec3| packing.corner_users.get(&corner_key(*point)) > Some(&1);
+        let is_shared = |point: &DVec3| packing.corner_users.get(&position_key(*point)) > Some(&1);
         Some(Self {
             corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
             normal: Vec3::from_dvec3(normal),
             in_mesh: [a, b, c].iter().any(is_shared),
             thickness: R::from_f64(description.thickness()),
             tip: Tip::Narrow,
-            culling: if packing.faces_of_solids.contains(&[a, b, c].map(corner_key)) {
+            culling: if packing
+                .faces_of_solids
+                .contains(&[a, b, c].map(position_key))
+            {
                 Culling::Far
             } else {
                 Culling::Nothing

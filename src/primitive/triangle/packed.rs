@@ -129,11 +129,6 @@ impl<R: Real> PackedTriangle<R> {
     }
 }
 
-/// Converts a corner to a key: two corners are the same if their coordinates are equal.
-pub fn corner_key(point: DVec3) -> Corner {
-    position_key(point)
-}
-
 /// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not
 /// distinguish points at the largest coordinate. In double precision, too, this ignores gaps that are only noise in
 /// the last digits.
@@ -146,21 +141,26 @@ pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]>
     let mut number = |position: Vec3<R>| {
         let next = numbers.len() as u32;
         let position = (position.to_dvec3() / step).round();
-        *numbers.entry(corner_key(position)).or_insert(next)
+        *numbers.entry(position_key(position)).or_insert(next)
     };
     let corners = triangles.iter().map(|triangle| triangle.corners);
     corners.map(|corners| corners.map(&mut number)).collect()
 }
 
+/// The corners of the visible triangles of a scene.
+pub fn visible_triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> {
+    let visible = scene.visible_objects();
+    visible.filter_map(|object| match &object.shape {
+        Shape::Triangle(triangle) => Some(triangle.corners()),
+        _ => None,
+    })
+}
+
 /// Counts the visible triangles that meet at each corner.
 pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
     let mut users = HashMap::new();
-    for object in scene.visible_objects() {
-        if let Shape::Triangle(triangle) = &object.shape {
-            for point in triangle.corners() {
-                *users.entry(corner_key(point)).or_insert(0) += 1;
-            }
-        }
+    for point in visible_triangles(scene).flatten() {
+        *users.entry(position_key(point)).or_insert(0) += 1;
     }
     users
 }
