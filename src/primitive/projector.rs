@@ -1,5 +1,7 @@
 //! Positions in the picture, as pixel rectangles that are never too small.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use crate::scene::{Camera, Projection};
@@ -29,9 +31,9 @@ const ANYWHERE: Extent = Extent {
 };
 
 impl Extent {
-    /// Returns whether the range contains any of the pixels `from..to`.
-    pub fn meets(self, from: usize, to: usize) -> bool {
-        self.from < to as f32 && self.to >= from as f32
+    /// Returns whether the range contains any of these pixels.
+    pub fn meets(self, pixels: &Range<usize>) -> bool {
+        self.from < pixels.end as f32 && self.to >= pixels.start as f32
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-use super::candidates::{Candidates, Span};
+use super::candidates::Candidates;
 use super::canvas::Canvas;
 use super::control::RenderControl;
 use super::engine::{Engine, Retracer, Workspace};
@@ -108,7 +108,7 @@ impl<R: SimdReal> Band<'_, R> {
         } = &mut *scratch;
         let retracing = (stop, self.retracer);
         let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, retracing);
-        in_band.keep_seen(self.candidates, plan, &self.rows, Span::Rows);
+        in_band.keep_seen(self.candidates, plan, &self.rows, |seen| seen.rows);
         for left in self.columns.clone().step_by(self.tile) {
             let tile = Tile {
                 columns: left..(left + self.tile).min(self.columns.end),
@@ -118,7 +118,7 @@ impl<R: SimdReal> Band<'_, R> {
                 continue;
             }
             let before = engine.rays.total();
-            in_tile.keep_seen(in_band, plan, &tile.columns, Span::Columns);
+            in_tile.keep_seen(in_band, plan, &tile.columns, |seen| seen.columns);
             if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }

@@ -30,15 +30,6 @@ pub struct Targets<'a, R> {
     pub culled_faces: &'a [Option<Arc<CulledFaces>>],
 }
 
-/// Direction of a range of pixels.
-#[derive(Clone, Copy, Debug)]
-pub enum Span {
-    /// From left to right.
-    Columns,
-    /// From top to bottom.
-    Rows,
-}
-
 /// What is left out of a list of primitives.
 #[derive(Clone, Copy, Debug)]
 pub enum Omit<'a> {
@@ -134,24 +125,19 @@ impl Candidates {
         (round + loose.take(2).count()).min(2)
     }
 
-    /// Becomes the candidates of `from` that can be seen in these columns (or rows) of pixels.
+    /// Becomes the candidates of `from` that can be seen in these rows or columns of pixels, whichever `extent` takes
+    /// of a rectangle on the screen.
     pub fn keep_seen<R: Real>(
         &mut self,
         from: &Self,
         plan: &Plan<R>,
         pixels: &Range<usize>,
-        span: Span,
+        extent: fn(&Rectangle) -> Extent,
     ) {
         let Some(screen) = &plan.screen else {
             return self.clone_from(from);
         };
-        let meets = |rectangle: &Rectangle| {
-            let extent: Extent = match span {
-                Span::Columns => rectangle.columns,
-                Span::Rows => rectangle.rows,
-            };
-            extent.meets(pixels.start, pixels.end)
-        };
+        let meets = |rectangle: &Rectangle| extent(rectangle).meets(pixels);
         for ((list, from), rectangles) in self.lists.iter_mut().zip(&from.lists).zip(screen) {
             list.clear();
             // Endless primitives have no rectangles.
