@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::beam::Beam;
 use super::bundle::Shaft;
-use super::candidates::{Candidates, Omit};
+use super::candidates::Candidates;
 use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
 use super::thin_cull::may_pass_thin;
@@ -96,7 +96,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) {
         let plan = self.plan;
         beam.gather::<L>(self.token, (&plan.balls, 0), &mut scratch.met);
-        candidates.sort_by_kind(plan, &scratch.met, Omit::Nothing);
+        candidates.sort_by_kind(plan, &scratch.met);
         candidates.has_geometry = plan.geometry.is_some();
         for (index, plane) in plan.primitives.planes.iter().enumerate() {
             if start_plane != Some(index) && beam.crosses(plane.normal, plane.offset) {
@@ -134,8 +134,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         // The first balls are those of the markers.
         beam.gather::<L>(self.token, (&plan.balls, plan.markers), &mut scratch.met);
-        let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
-        casters.sort_by_kind(plan, &scratch.met, omit);
+        casters.sort_by_kind(plan, &scratch.met);
+        casters.leave_out_markers(plan);
+        casters.leave_out_faces(&light.shadow_culled_faces);
         casters.has_geometry = plan.geometry.is_some();
         if plan.planes_cast {
             let planes = 0..plan.primitives.planes.len() as u32;
