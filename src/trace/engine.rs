@@ -152,7 +152,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
             self.stop,
             &mut retraced.traced,
         );
-        traced.replace(&retraced.indices, &retraced.traced, edges);
+        traced.replace(&retraced.indices, &retraced.traced);
         self.rays.again += retraced.indices.len() as u64;
     }
 
