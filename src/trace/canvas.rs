@@ -30,12 +30,6 @@ pub struct Pixels<'a, P> {
     pub level: Level,
 }
 
-impl<P> Pixels<'_, P> {
-    fn pixel(&mut self, column: usize, row: usize) -> &mut P {
-        &mut self.rows[row - self.place.rows.0][column - self.place.columns.0]
-    }
-}
-
 impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     fn fill(&mut self, tile: &Tile, stride: usize, channels: [&[R]; 3]) {
         let [left, top] = [self.place.columns.0, self.place.rows.0];
@@ -54,7 +48,8 @@ impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     }
 
     fn set(&mut self, column: usize, row: usize, [red, green, blue]: [R; 3]) {
-        *self.pixel(column, row) = P::of(red, green, blue);
+        let [left, top] = [self.place.columns.0, self.place.rows.0];
+        self.rows[row - top][column - left] = P::of(red, green, blue);
     }
 }
 

@@ -11,12 +11,11 @@ use super::band::Band;
 use super::candidates::Candidates;
 use super::canvas::Pixels;
 use super::control::RenderControl;
-use super::engine::Retracer;
 use super::messages::{BandMessages, EdgeMessages};
 use super::retrace::DoublePrecision;
 use super::stats::Rays;
 use super::threads::Threads;
-use super::tile::{Grid, Pass, Pixel};
+use super::tile::{Grid, Pass, Pixel, Tile};
 use super::workspace_pool::WorkspacePool;
 use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double, is_filtered};
 use crate::scene::{Aspect, Sampling, Scene};
@@ -274,16 +273,15 @@ impl Tracer {
             tile: self.tile,
             in_squares: self.in_squares,
             region: self.region,
-            columns: place.columns.0..place.columns.1,
-            rows: place.rows.0..place.rows.1,
+            place: Tile {
+                columns: place.columns.0..place.columns.1,
+                rows: place.rows.0..place.rows.1,
+            },
             canvas: &mut canvas,
             grid,
             sampling,
             messages,
-            retracer: self
-                .retracer
-                .as_ref()
-                .map(|retracer| retracer as &dyn Retracer),
+            retracer: self.retracer.as_ref().map(|retracer| retracer as _),
             workspace_pool: &self.workspace_pool,
             control,
         })
