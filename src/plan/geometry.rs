@@ -71,7 +71,8 @@ pub struct PlanCache<R> {
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
     /// Packed meshes for the next picture, in addition to those of the last one.
     extra_meshes: Meshes<R>,
-    culled_faces: CulledFacesCache<R>,
+    /// The faces of meshes that shadow rays can skip, kept from picture to picture.
+    pub culled_faces: CulledFacesCache<R>,
 }
 
 /// Results of the previous plan that the next one may reuse, in both precisions.
@@ -144,8 +145,8 @@ impl<R: Real> PlanCache<R> {
 
     /// The packed meshes of the last picture.
     fn last_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
-        let last = self.last.iter();
-        last.flat_map(|(_, geometry)| geometry.packed_meshes())
+        let last = self.last.iter().flat_map(|(_, last)| &last.meshes);
+        last.map(|instance| Arc::clone(&instance.mesh))
     }
 
     /// Takes the available packed meshes; only those of the last picture are kept here.
@@ -157,13 +158,8 @@ impl<R: Real> PlanCache<R> {
 
     /// Returns whether the last picture was of these objects.
     fn is_for(&self, objects: &List<Object>) -> bool {
-        let mut last = self.last.iter();
-        last.any(|(source, _)| source.objects.is_same(objects))
-    }
-
-    /// The faces of meshes that shadow rays can skip, kept from picture to picture.
-    pub fn culled_faces(&mut self) -> &mut CulledFacesCache<R> {
-        &mut self.culled_faces
+        let last = self.last.as_ref();
+        last.is_some_and(|(source, _)| source.objects.is_same(objects))
     }
 
     /// Returns the objects that fill the same surface; the previous result if no object has changed.
@@ -346,11 +342,6 @@ impl<R: Real> Geometry<R> {
         let is_fine = self.meshes.len() <= MAX_FINE_MESHES && self.primitives.is_empty();
         let coarse = self.bvh.outline().filter(move |_| !is_fine);
         coarse.chain(meshes.filter(move |_| is_fine))
-    }
-
-    fn packed_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
-        let meshes = self.meshes.iter();
-        meshes.map(|instance| Arc::clone(&instance.mesh))
     }
 
     /// The number of primitives, including triangles of meshes.

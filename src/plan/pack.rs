@@ -189,10 +189,10 @@ impl<R: Real> Plan<R> {
             // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
                 plan.drop_far_faces(scene, request, centre);
-                plan.drop_lit_faces(scene, request, cache.culled_faces());
+                plan.drop_lit_faces(scene, request, &mut cache.culled_faces);
             }
         }
-        cache.culled_faces().end_picture();
+        cache.culled_faces.end_picture();
         plan
     }
 
