@@ -159,28 +159,23 @@ mod tests {
     use crate::primitive::number_corners;
 
     /// A ball of triangles with its middle at `x` on the x axis.
-    fn ball(x: f64, material: u32) -> Vec<PackedTriangle<f64>> {
+    fn ball(x: f64) -> Vec<PackedTriangle<f64>> {
         let ball = icosphere(1.0);
         let moved = |corners: [DVec3; 3]| corners.map(|corner| corner + DVec3::X * x);
-        let faces = ball
-            .corners()
-            .map(moved)
-            .filter_map(PackedTriangle::of_mesh);
-        faces
-            .map(|face| PackedTriangle { material, ..face })
-            .collect()
+        let corners = ball.corners().map(moved);
+        corners.filter_map(PackedTriangle::of_mesh).collect()
     }
 
     #[test]
     fn each_part_looks_its_own_way_and_a_sheet_looks_neither() {
-        let (mut triangles, turned) = (ball(0.0, 0), ball(10.0, 0));
+        let (mut triangles, turned) = (ball(0.0), ball(10.0));
         let each = triangles.len();
         triangles.extend(turned);
         triangles[each..].iter_mut().for_each(PackedTriangle::flip);
         let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
         triangles.extend(PackedTriangle::of_mesh(sheet));
         // A tube without ends: the part of a ball near its equator.
-        let mut tube = ball(20.0, 0);
+        let mut tube = ball(20.0);
         tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
         tube.iter_mut().for_each(PackedTriangle::flip);
         triangles.extend(tube);
