@@ -14,7 +14,7 @@ use super::thresholds::THIN_WIDTH;
 use super::tile::Tile;
 use super::walk::Stack;
 use crate::plan::{Plan, PointLight, RayOrigin};
-use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive, Visit};
+use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive as _};
 use crate::simd::{Real, SimdFloat};
 
 /// Scratch memory for gathering candidates, reused for every beam.
@@ -58,6 +58,13 @@ impl Candidates {
                 self.keep_narrow(from, plan, |_, _| thin_width);
             }
         }
+    }
+
+    /// Returns whether one of the spheres alone hides all of `ball` from a light.
+    fn hold_umbra<R: Real>(&self, plan: &Plan<R>, light: DVec3, ball: &Ball) -> bool {
+        let spheres = self.of(Kind::Sphere).iter();
+        let mut spheres = spheres.map(|&index| &plan.primitives.spheres[index as usize]);
+        spheres.any(|sphere| sphere.ball().is_some_and(|own| own.hides(light, ball)))
     }
 
     /// Removes the planes that the rays of a tile pass by or leave behind.
@@ -144,14 +151,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         casters.leave_out(plan, &light.holders);
         thin.keep_thin(casters, plan, footprint);
-        let mut umbra = UmbraSearch {
-            casters,
-            light: from,
-            ball,
-            is_found: false,
-        };
-        plan.primitives.visit(&mut umbra);
-        *is_umbra = umbra.is_found;
+        *is_umbra = casters.hold_umbra(plan, from, ball);
     }
 }
 
@@ -202,21 +202,5 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             candidates.thin.has_geometry =
                 may_pass_thin::<L>(self.token, geometry, &shaft, &margin);
         }
-    }
-}
-
-/// Looks for a caster that alone hides a ball from a light.
-struct UmbraSearch<'a> {
-    casters: &'a Candidates,
-    light: DVec3,
-    ball: &'a Ball,
-    is_found: bool,
-}
-
-impl<R: Real> Visit<R> for UmbraSearch<'_> {
-    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
-        let mut casters = self.casters.of(kind).iter();
-        self.is_found = self.is_found
-            || casters.any(|&index| primitives[index as usize].hides(self.light, self.ball));
     }
 }
