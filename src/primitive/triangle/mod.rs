@@ -79,25 +79,21 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     type Prepared<L: SimdFloat<Real = R>> = Shear<L>;
 
     fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
-        let Triangle { a, b, c } = *description;
-        let normal = (c - a).cross(b - a).try_normalize()?;
+        let corners = description.corners();
         let is_shared = |point: &DVec3| packing.corner_users.get(&position_key(*point)) > Some(&1);
+        let is_of_solid = packing.faces_of_solids.contains(&corners.map(position_key));
         Some(Self {
-            corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
-            normal: Vec3::from_dvec3(normal),
-            in_mesh: [a, b, c].iter().any(is_shared),
-            thickness: R::from_f64(description.thickness()),
+            corners: corners.map(|corner| Vec3::from_dvec3(corner - packing.centre)),
+            in_mesh: corners.iter().any(is_shared),
             tip: Tip::Narrow,
-            culling: if packing
-                .faces_of_solids
-                .contains(&[a, b, c].map(position_key))
-            {
+            culling: if is_of_solid {
                 Culling::Far
             } else {
                 Culling::Nothing
             },
-            longest: R::from_f64(description.longest_side()),
             material,
+            // Its measures do not depend on where it is.
+            ..Self::of_mesh(corners)?
         })
     }
 
