@@ -9,7 +9,7 @@ use super::thresholds::PIXEL_STEPS;
 use super::tile::Tile;
 
 /// For the pixels of a tile and those around it, the sides from which they need no more messages.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct PixelSides {
     /// For each pixel, the bits of the sides from which nothing more is to be learnt; row by row, with a margin of
     /// the pixels around the tile.
@@ -38,15 +38,6 @@ pub enum AdjacentPixel {
 }
 
 impl PixelSides {
-    /// Creates a set without pixels.
-    pub fn new() -> Self {
-        Self {
-            known: Vec::new(),
-            stride: 0,
-            first: [0; 2],
-        }
-    }
-
     /// Loads what the pixels of a tile know. Of the pixels around it nothing is loaded, though they may know
     /// something.
     pub fn start(&mut self, tile: &Tile, messages: &EdgeMessages) {
@@ -183,7 +174,7 @@ mod tests {
         };
         let messages = EdgeMessages::new(7, 0..4);
         messages.known_sides(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
-        let mut borders = PixelSides::new();
+        let mut borders = PixelSides::default();
         borders.start(&tile, &messages);
         let notified_pixels = |borders: &PixelSides, point: [u16; 2]| {
             let side = borders.side_of(point)?;

@@ -18,20 +18,11 @@ use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive as _};
 use crate::simd::{Real, SimdFloat};
 
 /// Scratch memory for gathering candidates, reused for every beam.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Scratch<R> {
     /// Boxes of a tree that are still to be visited.
     pub stack: Stack<R>,
     met: Vec<u32>,
-}
-
-impl<R> Default for Scratch<R> {
-    fn default() -> Self {
-        Self {
-            stack: Stack::new(),
-            met: Vec::new(),
-        }
-    }
 }
 
 /// What can block a light on the way to the hits of a tile.

@@ -20,7 +20,7 @@ const MIN_ALIKE_PARTS: u8 = 4;
 /// The cells of a tile whose inside is not known. If one edge crosses a cell according to its corners,
 /// [`CrossedCell`] takes a third of the samples that quarters would; if a cell shows one thing whose colour changes
 /// evenly, [`Lattice::accumulate_even`] takes one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Refinement<R> {
     lattice: Lattice<R>,
     cells: Vec<Cell>,
@@ -44,23 +44,6 @@ pub struct Refinement<R> {
 }
 
 impl<R: Real> Refinement<R> {
-    /// Creates a refinement without cells.
-    pub fn new() -> Self {
-        Self {
-            lattice: Lattice::new(),
-            cells: Vec::new(),
-            to_divide: Vec::new(),
-            crossed: Vec::new(),
-            even: Vec::new(),
-            borders: PixelSides::new(),
-            checked: 0,
-            notified_pixels: Vec::new(),
-            notified: Vec::new(),
-            part_counts: Vec::new(),
-            crowded: Vec::new(),
-        }
-    }
-
     /// Removes the cells of the previous tile.
     pub fn clear(&mut self) {
         self.to_divide.clear();
