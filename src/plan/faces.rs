@@ -12,7 +12,7 @@ use crate::simd::{Real, Vec3};
 
 impl<R: Real> Plan<R> {
     /// Finds the faces of solids that camera rays, and shadow rays to each light, can skip.
-    pub fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest, centre: DVec3) {
+    pub fn drop_far_faces(&mut self, scene: &Scene, request: &RenderRequest) {
         let triangles = &self.primitives.triangles;
         let solids = Solids::among(triangles);
         let turned_away = |point: DVec3| {
@@ -23,7 +23,7 @@ impl<R: Real> Plan<R> {
         };
         let projection = request.projection_of(&scene.camera);
         if projection == Projection::Perspective {
-            self.camera_culled_faces = turned_away(scene.camera.position - centre);
+            self.camera_culled_faces = turned_away(scene.camera.position - self.centre);
         }
         for light in &mut self.lights {
             light.shadow_culled_faces = turned_away(light.position.to_dvec3());

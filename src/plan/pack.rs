@@ -167,7 +167,7 @@ impl<R: Real> Plan<R> {
             let geometry =
                 cache.geometry(scene, (centre, &contacts.outside_tree), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
-            plan.take_geometry(geometry, projector, centre);
+            plan.take_geometry(geometry, projector);
         }
         let numbers = plan.pack(scene, &contacts, projector);
         let is_outside = |index: &usize| contacts.outside_tree.contains(index);
@@ -188,7 +188,7 @@ impl<R: Real> Plan<R> {
             plan.balls = Balls::around(&plan.primitives);
             // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
-                plan.drop_far_faces(scene, request, centre);
+                plan.drop_far_faces(scene, request);
                 plan.drop_lit_faces(scene, request, &mut cache.culled_faces);
             }
         }
@@ -197,16 +197,11 @@ impl<R: Real> Plan<R> {
     }
 
     /// Stores the geometry of the BVH and the screen rectangles that enclose it.
-    fn take_geometry(
-        &mut self,
-        geometry: Arc<Geometry<R>>,
-        projector: Option<&Projector>,
-        centre: DVec3,
-    ) {
+    fn take_geometry(&mut self, geometry: Arc<Geometry<R>>, projector: Option<&Projector>) {
         let rectangle = |bounds: BoundingBox<R>| {
             let (middle, radius) = bounds.ball();
             let radius = radius.to_f64() * (1.0 + CAUTION);
-            Some(projector?.ball(middle.to_dvec3() + centre, radius))
+            Some(projector?.ball(middle.to_dvec3() + self.centre, radius))
         };
         self.outline = geometry.outline().filter_map(rectangle).collect();
         self.geometry = Some(geometry);
