@@ -7,16 +7,15 @@ use glam::DVec3;
 
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
-use super::components::large_components;
+use super::components::{large_components, number_corners};
 use super::contacts::LightContacts;
 use super::culled_faces::CulledFacesCache;
 use super::meshes::Meshes;
 use super::packed_mesh::{MeshInstance, PackedMesh, measure};
 use super::request::RenderRequest;
-use super::solids::faces_of_solids;
+use super::solids::{count_corner_users, faces_of_solids, visible_triangles};
 use crate::primitive::{
     BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Tip, Visit,
-    count_corner_users, number_corners, visible_triangles,
 };
 use crate::scene::{
     Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, around, coincidences,

@@ -19,11 +19,10 @@ use super::plane_occluders::classify_planes;
 use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
-use super::solids::faces_of_solids;
+use super::solids::{count_corner_users, faces_of_solids};
 use super::view::View;
 use crate::primitive::{
     Blur, BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
-    count_corner_users,
 };
 use crate::scene::{
     Accelerator, Camera, CoordinateFrame, LightObj, Methods, Object, Sampling, Scene, Shape,

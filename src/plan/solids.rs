@@ -1,14 +1,14 @@
 //! Closed convex solids made of triangles: seen from outside, the faces that are turned away are hidden by others
 //! and need no test.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::components::{components_at_corners, numbered};
+use super::components::{components_at_corners, numbering};
 use crate::mesh::{are_closed, position_key};
-use crate::primitive::{Corner, PackedTriangle, visible_triangles};
-use crate::scene::Scene;
+use crate::primitive::{Corner, PackedTriangle};
+use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
 /// Maximum number of faces of a solid, whose corners are all compared with each face.
@@ -62,6 +62,24 @@ impl Solids {
     }
 }
 
+/// The corners of the visible triangles of a scene.
+pub fn visible_triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> {
+    let visible = scene.visible_objects();
+    visible.filter_map(|object| match &object.shape {
+        Shape::Triangle(triangle) => Some(triangle.corners()),
+        _ => None,
+    })
+}
+
+/// Counts the visible triangles that meet at each corner.
+pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
+    let mut users = HashMap::new();
+    for point in visible_triangles(scene).flatten() {
+        *users.entry(position_key(point)).or_insert(0) += 1;
+    }
+    users
+}
+
 /// The corners of the faces of all solids formed by visible triangles of a scene.
 pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
     let Solids { triangles, solids } = Solids::made_of(visible_triangles(scene).collect());
@@ -81,11 +99,12 @@ fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
 
 /// Groups triangles that are connected by common corners.
 fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
-    let corners = triangles.as_flattened().iter();
-    let numbers = numbered(corners.map(|&corner| position_key(corner)));
-    let (faces, _) = numbers.as_chunks();
+    let mut number = numbering();
+    let mut number = |corner: DVec3| number(position_key(corner));
+    let faces = triangles.iter().map(|corners| corners.map(&mut number));
+    let faces: Vec<_> = faces.collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for (index, component) in components_at_corners(faces).into_iter().enumerate() {
+    for (index, component) in components_at_corners(&faces).into_iter().enumerate() {
         // Components are numbered in order of their first triangle.
         found.resize_with(found.len().max(component as usize + 1), Vec::new);
         found[component as usize].push(index);

@@ -113,7 +113,7 @@ impl Faces<'_> {
 mod tests {
     use super::*;
     use crate::plan::bvh::Member;
-    use crate::primitive::number_corners;
+    use crate::plan::components::number_corners;
 
     fn found(corners: &[[Vec3<f64>; 3]]) -> Vec<f64> {
         let packed =

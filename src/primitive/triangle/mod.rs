@@ -13,9 +13,7 @@ mod in_doubt;
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::SHARES_PER_UNIT;
-pub use packed::{
-    Culling, PackedTriangle, Tip, Vertex, count_corner_users, number_corners, visible_triangles,
-};
+pub use packed::{Culling, PackedTriangle, Tip, Vertex};
 use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
