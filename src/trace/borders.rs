@@ -29,14 +29,6 @@ pub struct Side {
     pub notified_pixels: [Option<(usize, u8)>; 2],
 }
 
-/// A pixel adjacent to a side.
-pub enum AdjacentPixel {
-    /// A pixel of the tile, as a cell with signatures only, see [`Cell::signatures_only`].
-    InTile(Cell),
-    /// A pixel of another tile, by its row and column in the picture.
-    InOtherTile([usize; 2]),
-}
-
 impl PixelSides {
     /// Loads what the pixels of a tile know. Of the pixels around it nothing is loaded, though they may know
     /// something.
@@ -124,16 +116,6 @@ impl PixelSides {
         })
     }
 
-    /// Returns the pixel at an index; `None` if it is above or left of the picture.
-    pub fn adjacent_pixel(&self, index: usize) -> Option<AdjacentPixel> {
-        let pixel = self.pixel(index)?;
-        Some(if self.is_inside(index) {
-            AdjacentPixel::InTile(self.cell_of(pixel))
-        } else {
-            AdjacentPixel::InOtherTile(pixel)
-        })
-    }
-
     /// Returns a pixel of the tile, by its row and column in the picture, as a cell with signatures only, see
     /// [`Cell::signatures_only`].
     pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
@@ -141,14 +123,17 @@ impl PixelSides {
         Cell::pixel(column - left, row - top, false).signatures_only()
     }
 
-    fn pixel(&self, index: usize) -> Option<[usize; 2]> {
+    /// Returns the row and the column in the picture of the pixel at an index, which must be in the picture.
+    pub fn pixel(&self, index: usize) -> [usize; 2] {
         let [top, left] = self.first;
-        let row = (top + index / self.stride).checked_sub(1)?;
-        let column = (left + index % self.stride).checked_sub(1)?;
-        Some([row, column])
+        [
+            top + index / self.stride - 1,
+            left + index % self.stride - 1,
+        ]
     }
 
-    fn is_inside(&self, index: usize) -> bool {
+    /// Returns whether the pixel at an index is in the tile.
+    pub fn is_inside(&self, index: usize) -> bool {
         let (row, column) = (index / self.stride, index % self.stride);
         let rows = self.known.len() / self.stride;
         0 < row && row + 1 < rows && 0 < column && column + 1 < self.stride
@@ -181,7 +166,7 @@ mod tests {
             let pixels = side.notified_pixels.into_iter().flatten();
             Some(
                 pixels
-                    .filter_map(|(index, side)| Some((borders.pixel(index)?, side)))
+                    .map(|(index, side)| (borders.pixel(index), side))
                     .collect(),
             )
         };
@@ -206,8 +191,8 @@ mod tests {
             .side_of([0, 1])
             .and_then(|side| side.notified_pixels[0])
             .expect("one");
-        let left = borders.adjacent_pixel(left);
-        assert!(matches!(left, Some(AdjacentPixel::InOtherTile([0, 3]))));
+        assert!(!borders.is_inside(left));
+        assert_eq!(borders.pixel(left), [0, 3]);
         assert_eq!(notified_pixels(&borders, [3 * step, 1]), None);
         assert_eq!(
             notified_pixels(&borders, [1, 0]),
