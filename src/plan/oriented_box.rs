@@ -43,14 +43,8 @@ impl<R: Real> OrientedBox<R> {
         let aside = |corner: DVec3| (corner - start).reject_from_normalized(along);
         let widest = aside(farthest(&|corner| aside(corner).length_squared())?);
         // Rejected once more: what is left of a short vector may not be perpendicular.
-        let across = widest.try_normalize().map_or_else(
-            || along.any_orthonormal_vector(),
-            |across| {
-                across
-                    .reject_from_normalized(along)
-                    .normalize_or(along.any_orthonormal_vector())
-            },
-        );
+        let across = widest.normalize_or_zero().reject_from_normalized(along);
+        let across = across.normalize_or(along.any_orthonormal_vector());
         let axes = DMat3::from_cols(along, across, along.cross(across));
         let into = axes.transpose();
         let turned = corners().map(|corner| into * corner);
