@@ -14,8 +14,8 @@ pub struct Balls<R> {
     pub z: Vec<R>,
     /// Radii; minus infinity for padding.
     pub radius: Vec<R>,
-    /// The numbers of the primitives in the balls.
-    pub numbers: Vec<u32>,
+    /// The kinds of the primitives in the balls, and their indices in the lists of these kinds.
+    pub primitives: Vec<(Kind, u32)>,
 }
 
 impl<R: Real> Balls<R> {
@@ -38,11 +38,11 @@ impl<R: Real> Balls<R> {
 }
 
 impl<R: Real> Visit<R> for Balls<R> {
-    fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], first: usize) {
-        for (index, primitive) in primitives.iter().enumerate() {
+    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
+        for (index, primitive) in (0..).zip(primitives) {
             if let Some(Ball { center, radius }) = primitive.ball() {
                 self.push(center.to_array(), radius);
-                self.numbers.push((first + index) as u32);
+                self.primitives.push((kind, index));
             }
         }
     }

@@ -179,12 +179,9 @@ impl Candidates {
     /// Becomes the primitives in these balls of the plan, sorted by kind; no geometry.
     pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, balls: &[u32]) {
         self.clear();
-        let firsts = plan.primitives.firsts();
         for &ball in balls {
-            let number = plan.balls.numbers[ball as usize];
-            let started_kinds = firsts.iter().filter(|&&first| first <= number as usize);
-            let kind = started_kinds.count() - 1;
-            self.lists[kind].push(number - firsts[kind] as u32);
+            let (kind, index) = plan.balls.primitives[ball as usize];
+            self.lists[kind as usize].push(index);
         }
     }
 }
