@@ -89,7 +89,7 @@ impl<R: SimdReal> Band<'_, R> {
         if !self.place.is_in(self.region) {
             return Some(Rays::default());
         }
-        let (plan, stop) = (self.plan, &self.control.stop);
+        let (plan, control) = (self.plan, self.control);
         let reused = self.workspace_pool.take::<BandScratch<L>>();
         let mut scratch = reused.unwrap_or_else(|| Box::new(BandScratch::new(self.in_squares)));
         let BandScratch {
@@ -99,7 +99,7 @@ impl<R: SimdReal> Band<'_, R> {
             in_band,
             in_tile,
         } = &mut *scratch;
-        let retracing = (stop, self.retracer);
+        let retracing = (control, self.retracer);
         let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, retracing);
         in_band.keep_seen(self.candidates, plan, &self.place.rows, |seen| seen.rows);
         for left in self.place.columns.clone().step_by(self.tile) {
@@ -158,8 +158,7 @@ impl<R: SimdReal> Band<'_, R> {
                 self.canvas.scatter(&tile, self.grid, channels);
                 self.grid.pixels(&tile).count()
             };
-            let pixels = &self.control.pixels;
-            pixels.fetch_add(traced as u64, Ordering::Relaxed);
+            control.pixels.fetch_add(traced as u64, Ordering::Relaxed);
             if plan.show == Show::Cost {
                 self.fill_with_heat(&tile, engine.rays.total() - before);
             }
