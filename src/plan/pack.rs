@@ -152,7 +152,7 @@ impl<R: Real> Plan<R> {
             ties: Vec::new(),
             clearance: R::ZERO,
             visible_objects: scene.visible_objects().count(),
-            flats: Flats::NONE,
+            flats: Flats::default(),
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,

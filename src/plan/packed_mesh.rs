@@ -83,30 +83,19 @@ impl MeshKey {
     }
 }
 
-/// The rotated and scaled points of a mesh.
-struct Points {
-    /// Relative to `middle`.
-    points: Vec<DVec3>,
-    /// The middle of the box around the corners, relative to the mesh's origin.
-    middle: DVec3,
-}
-
-impl Points {
-    fn of(source: &Triangles, linear: DMat3) -> Self {
-        let mut points: Vec<DVec3> = source
-            .points()
-            .iter()
-            .map(|&point| linear * point)
-            .collect();
-        let named = source.faces().as_flattened().iter();
-        let corners = named.map(|&corner| points[corner as usize]);
-        let (low, high) = around(corners.map(|corner| (corner, corner))).unwrap_or_default();
-        let middle = low * 0.5 + high * 0.5;
-        for point in &mut points {
-            *point -= middle;
-        }
-        Self { points, middle }
+/// The rotated and scaled points of a mesh, relative to the middle of the box around its corners; and that middle,
+/// relative to the mesh's origin.
+fn points_and_middle(source: &Triangles, linear: DMat3) -> (Vec<DVec3>, DVec3) {
+    let points = source.points().iter().map(|&point| linear * point);
+    let mut points: Vec<DVec3> = points.collect();
+    let named = source.faces().as_flattened().iter();
+    let corners = named.map(|&corner| points[corner as usize]);
+    let (low, high) = around(corners.map(|corner| (corner, corner))).unwrap_or_default();
+    let middle = low * 0.5 + high * 0.5;
+    for point in &mut points {
+        *point -= middle;
     }
+    (points, middle)
 }
 
 /// A mesh at its position.
@@ -145,7 +134,7 @@ impl PackedMesh<f64> {
 
     fn of(mesh: &Mesh) -> Self {
         let linear = mesh.linear_transform();
-        let Points { points, middle } = Points::of(mesh.source.triangles(), linear);
+        let (points, middle) = points_and_middle(mesh.source.triangles(), linear);
         let is_mirrored = linear.determinant() < 0.0;
         // Clockwise seen from outside, as in the source.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -220,7 +209,7 @@ impl<R: Real> PackedMesh<R> {
     /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
         let linear = mesh.linear_transform();
-        let Points { points, middle } = Points::of(&self.source, linear);
+        let (points, middle) = points_and_middle(&self.source, linear);
         let faces = self.faces.par_iter().zip(&self.triangles);
         let triangles = faces.map(|(face, before)| {
             let corners = face.map(|point| points[point as usize]);
