@@ -14,15 +14,15 @@ pub struct Balls<R> {
     pub z: Vec<R>,
     /// Radii; minus infinity for padding.
     pub radius: Vec<R>,
+    /// The kinds of the primitives in the balls, and their indices in the lists of these kinds.
+    pub primitives: Vec<(Kind, u32)>,
 }
 
 impl<R: Real> Balls<R> {
-    /// Stores these balls in their order.
-    pub fn new<'a>(balls: impl Iterator<Item = &'a Ball>) -> Self {
+    /// The balls around all bounded primitives, in the order of their numbers.
+    pub fn around(primitives: &Primitives<R>) -> Self {
         let mut all = Self::default();
-        for ball in balls {
-            all.push(ball.center.to_array(), ball.radius);
-        }
+        primitives.visit(&mut all);
         while !all.x.len().is_multiple_of(MAX_LANES) {
             all.push([0.0; 3], f64::NEG_INFINITY);
         }
@@ -37,22 +37,13 @@ impl<R: Real> Balls<R> {
     }
 }
 
-/// The bounding balls of all bounded primitives, with their numbers.
-pub fn balls_of<R: Real>(primitives: &Primitives<R>) -> Vec<(u32, Ball)> {
-    let mut balls = BallCollector(Vec::new());
-    primitives.visit(&mut balls);
-    balls.0
-}
-
-struct BallCollector(Vec<(u32, Ball)>);
-
-impl<R: Real> Visit<R> for BallCollector {
-    fn visit<P: Primitive<R>>(&mut self, _kind: Kind, primitives: &[P], first: usize) {
-        let balls = primitives.iter().enumerate();
-        let balls = balls.filter_map(|(index, primitive)| {
-            let ball = primitive.ball()?;
-            Some(((first + index) as u32, ball))
-        });
-        self.0.extend(balls);
+impl<R: Real> Visit<R> for Balls<R> {
+    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
+        for (index, primitive) in (0..).zip(primitives) {
+            if let Some(Ball { center, radius }) = primitive.ball() {
+                self.push(center.to_array(), radius);
+                self.primitives.push((kind, index));
+            }
+        }
     }
 }

@@ -29,9 +29,8 @@ impl Borders {
         material: impl Fn(u32) -> u32,
     ) -> Self {
         let edges = Edges::of(points);
-        let parts =
-            |pairs: &mut dyn Iterator<Item = [u32; 2]>| components_along_edges(points.len(), pairs);
-        let are_different = (1..points.len() as u32).any(|face| material(face) != material(0));
+        let count = points.len();
+        let are_different = (1..count as u32).any(|face| material(face) != material(0));
         let is_alike = |&[one, other]: &[u32; 2]| material(one) == material(other);
         let surface = Surface {
             points,
@@ -44,8 +43,9 @@ impl Borders {
                 .map(|face| (face, surface.width(face)))
                 .collect(),
             is_closed: edges.are_closed(),
-            connected: parts(&mut edges.pairs()),
-            of_one_material: are_different.then(|| parts(&mut edges.pairs().filter(is_alike))),
+            connected: components_along_edges(count, edges.pairs()),
+            of_one_material: are_different
+                .then(|| components_along_edges(count, edges.pairs().filter(is_alike))),
         }
     }
 }

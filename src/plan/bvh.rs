@@ -9,7 +9,7 @@ use obvhs::aabb::Aabb;
 
 pub use super::grouping::{Child, GROUP};
 use super::grouping::{WideNode, group_boxes};
-use crate::primitive::BoundingBox;
+use crate::primitive::{BoundingBox, PackedTriangle, Primitive as _};
 use crate::simd::{Real, Vec3};
 
 /// A node: up to [`GROUP`] boxes, one array per component, each of which fills a cache line. Single precision is
@@ -170,6 +170,16 @@ impl<R: Real> Member<R> {
     }
 }
 
+impl Member<f64> {
+    /// A triangle as a member of a tree.
+    pub fn of(triangle: &PackedTriangle<f64>) -> Self {
+        Self {
+            bounds: BoundingBox::around(&triangle.corners),
+            thickness: triangle.thickness(),
+        }
+    }
+}
+
 impl<R: Real> Bvh<R> {
     /// Builds a tree over `count` members. They are queried by number instead of stored, since a million of them
     /// would take much memory twice.
@@ -267,11 +277,25 @@ impl<R: Real> Bvh<R> {
         }
     }
 
+    /// The members for whose boxes, and all boxes around these, a condition holds; in any order.
+    pub fn members_where(&self, mut holds: impl FnMut(&BoundingBox<R>) -> bool) -> Vec<u32> {
+        let (mut members, mut waiting) = (Vec::new(), vec![0_u32]);
+        while let Some(node) = waiting.pop().and_then(|node| self.nodes.get(node as usize)) {
+            for index in (0..node.count).filter(|&index| holds(&node.bounds(index))) {
+                match node.child(index) {
+                    Child::Member(member) => members.push(member),
+                    Child::Node(inner) => waiting.push(inner),
+                }
+            }
+        }
+        members
+    }
+
     /// The boxes of the root.
     pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
         let root = self.nodes.first();
         root.into_iter()
-            .flat_map(|root| (0..root.count).map(|index| root.get(index).bounds))
+            .flat_map(|root| (0..root.count).map(|index| root.bounds(index)))
     }
 }
 

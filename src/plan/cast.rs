@@ -114,7 +114,6 @@ fn intersect<R: Real>([a, b, c]: &[Vec3<R>; 3], origin: Vec3<R>, direction: Vec3
 mod tests {
     use super::*;
     use crate::plan::bvh::Member;
-    use crate::primitive::BoundingBox;
 
     fn at(x: f64, y: f64, z: f64) -> Vec3<f64> {
         Vec3::new(x, y, z)
@@ -149,12 +148,8 @@ mod tests {
             let packed =
                 |corners: &[Vec3<f64>; 3]| PackedTriangle::of_mesh(corners.map(Vec3::to_dvec3));
             let triangles: Vec<_> = parts.iter().flatten().filter_map(packed).collect();
-            let member = |triangle: &PackedTriangle<f64>| Member {
-                bounds: BoundingBox::around(&triangle.corners),
-                thickness: triangle.thickness,
-            };
-            let members: Vec<_> = triangles.iter().map(member).collect();
-            is_outside(&triangles, &Bvh::new(members.len(), |n| members[n]), point)
+            let bvh = Bvh::new(triangles.len(), |n| Member::of(&triangles[n]));
+            is_outside(&triangles, &bvh, point)
         };
         let room = [solid(10.0, 0.0, false), solid(3.0, 4.0, false)];
         // Below the table, beside it, in it, and far away.

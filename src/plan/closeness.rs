@@ -105,13 +105,17 @@ fn checked_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     scene.visible_lights().filter(move |_| are_few)
 }
 
+/// The visible flat objects.
+pub fn visible_pieces(scene: &Scene) -> impl Iterator<Item = PlanePiece> {
+    let visible = scene.visible_objects();
+    visible.filter_map(|object| object.shape.plane_piece())
+}
+
 /// Returns whether the eye, if rays start from a point, or a light is almost on the border of something flat, in a
 /// scene of this size.
 pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
     let least = MIN_DISTANCE_OF_BORDER * size;
-    let visible = scene.visible_objects();
-    let mut pieces = visible.filter_map(|object| object.shape.plane_piece());
-    pieces.any(|piece| {
+    visible_pieces(scene).any(|piece| {
         let is_near = |point: DVec3| piece.distance_of_border(point) < least;
         eye.is_some_and(is_near) || checked_lights(scene).any(|light| is_near(light.position))
     })
@@ -119,9 +123,7 @@ pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
 
 /// Returns whether two flat pieces are a tiny distance apart. Those that coincide are ordered by ties.
 pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
-    let visible = scene.visible_objects();
-    let pieces = visible.filter_map(|object| object.shape.plane_piece());
-    let pieces: Vec<_> = pieces.take(MOST_PIECES).collect();
+    let pieces: Vec<_> = visible_pieces(scene).take(MOST_PIECES).collect();
     pieces.iter().enumerate().any(|(index, piece)| {
         let mut others = pieces[index + 1..].iter();
         others.any(|other| {

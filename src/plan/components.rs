@@ -2,11 +2,13 @@
 //! counter-clockwise, and components may differ.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
 use glam::DVec3;
 
+use crate::mesh::position_key;
 use crate::primitive::PackedTriangle;
-use crate::simd::Vec3;
+use crate::simd::{Real as _, Vec3};
 
 /// Volume that an open sheet may enclose through rounding alone, relative to its area to the power of 1.5.
 const MAX_OPEN_VOLUME: f64 = 1e-6;
@@ -31,7 +33,8 @@ pub fn components_at_corners(points: &[[u32; 3]]) -> Vec<u32> {
         sets.join(a, b);
         sets.join(b, c);
     }
-    numbered(points.iter().map(|face| sets.root(face[0])))
+    let first_points = points.iter().map(|face| sets.root(face[0]));
+    first_points.map(numbering()).collect()
 }
 
 /// Returns the component of each of `count` faces, given pairs of faces that share an edge: faces that touch only
@@ -41,17 +44,31 @@ pub fn components_along_edges(count: usize, pairs: impl Iterator<Item = [u32; 2]
     for [one, other] in pairs {
         sets.join(one, other);
     }
-    numbered((0..count as u32).map(|face| sets.root(face)))
+    let first_faces = (0..count as u32).map(|face| sets.root(face));
+    first_faces.map(numbering()).collect()
 }
 
-/// Numbers the distinct values from 0, in the order of their first occurrence.
-fn numbered(firsts: impl Iterator<Item = u32>) -> Vec<u32> {
+/// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not
+/// distinguish points at the largest coordinate. In double precision, too, this ignores gaps that are only noise in
+/// the last digits.
+pub fn number_corners(triangles: &[PackedTriangle<f64>]) -> Vec<[u32; 3]> {
+    let all = triangles.iter().flat_map(corners);
+    let farthest = all.map(|corner| corner.abs().max_element());
+    let step =
+        (farthest.fold(0.0, f64::max) * 2.0 * f64::from(f32::UNIT_ROUNDOFF)).max(f64::MIN_POSITIVE);
+    let mut number = numbering();
+    let mut number = |corner: DVec3| number(position_key((corner / step).round()));
+    let faces = triangles.iter().map(corners);
+    faces.map(|corners| corners.map(&mut number)).collect()
+}
+
+/// A function that numbers distinct values from 0, in the order of their first occurrence.
+pub fn numbering<K: Eq + Hash>() -> impl FnMut(K) -> u32 {
     let mut numbers = HashMap::new();
-    let number = |first| {
+    move |value| {
         let next = numbers.len() as u32;
-        *numbers.entry(first).or_insert(next)
-    };
-    firsts.map(number).collect()
+        *numbers.entry(value).or_insert(next)
+    }
 }
 
 /// Returns the first face of each face's component; empty if there is at most one component.
@@ -155,31 +172,25 @@ impl UnionFind {
 mod tests {
     use super::*;
     use crate::mesh::icosphere;
-    use crate::primitive::number_corners;
 
     /// A ball of triangles with its middle at `x` on the x axis.
-    fn ball(x: f64, material: u32) -> Vec<PackedTriangle<f64>> {
+    fn ball(x: f64) -> Vec<PackedTriangle<f64>> {
         let ball = icosphere(1.0);
         let moved = |corners: [DVec3; 3]| corners.map(|corner| corner + DVec3::X * x);
-        let faces = ball
-            .corners()
-            .map(moved)
-            .filter_map(PackedTriangle::of_mesh);
-        faces
-            .map(|face| PackedTriangle { material, ..face })
-            .collect()
+        let corners = ball.corners().map(moved);
+        corners.filter_map(PackedTriangle::of_mesh).collect()
     }
 
     #[test]
     fn each_part_looks_its_own_way_and_a_sheet_looks_neither() {
-        let (mut triangles, turned) = (ball(0.0, 0), ball(10.0, 0));
+        let (mut triangles, turned) = (ball(0.0), ball(10.0));
         let each = triangles.len();
         triangles.extend(turned);
         triangles[each..].iter_mut().for_each(PackedTriangle::flip);
         let sheet = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner + DVec3::Z * 7.0);
         triangles.extend(PackedTriangle::of_mesh(sheet));
         // A tube without ends: the part of a ball near its equator.
-        let mut tube = ball(20.0, 0);
+        let mut tube = ball(20.0);
         tube.retain(|face| face.corners.iter().all(|corner| corner.y.abs() < 0.9));
         tube.iter_mut().for_each(PackedTriangle::flip);
         triangles.extend(tube);

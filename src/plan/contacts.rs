@@ -42,7 +42,9 @@ pub struct Contacts {
     pub eye_object: Option<usize>,
     /// The contacts of the lights.
     pub lights: Arc<LightContacts>,
-    outside_tree: BTreeSet<usize>,
+    /// The objects that are kept out of the tree: those that are completely hidden, those that contain lights or
+    /// the eye, and those that share a surface; the latter two only if they are not too many.
+    pub outside_tree: BTreeSet<usize>,
     /// The objects in `shared` other than meshes: the numbers of their primitives are needed, in a list or in the
     /// tree.
     sharing: BTreeSet<usize>,
@@ -140,13 +142,14 @@ impl Contacts {
         if request.model == Model::Everything {
             return Self::default();
         }
+        let found = found.iter().copied();
+        let (whole, shared): (Vec<_>, _) = found.partition(|found| found.extent == Overlap::Whole);
         let mut contacts = Self {
+            covered: whole.into_iter().map(|found| found.later).collect(),
+            shared,
             lights,
             ..Self::default()
         };
-        for one in found {
-            contacts.add(*one);
-        }
         let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
         contacts.find_eye_contacts(scene, is_parallel);
         contacts.find_outside_tree(&scene.objects);
@@ -157,8 +160,7 @@ impl Contacts {
     fn find_eye_contacts(&mut self, scene: &Scene, is_parallel: bool) {
         let eye = scene.camera.position;
         let direction = unit(scene.camera.look_at).unwrap_or_default();
-        let objects = scene.objects.iter().enumerate();
-        for (index, Object { shape, .. }) in objects.filter(|(_, object)| object.visible) {
+        for (index, Object { shape, .. }) in visible_objects(&scene.objects) {
             if let Some(piece) = shape.plane_piece() {
                 let holds_eye = piece.height(eye) == 0.0;
                 if holds_eye && (!is_parallel || piece.is_perpendicular_to(direction)) {
@@ -171,20 +173,6 @@ impl Contacts {
                 self.eye_object = Some(index);
             }
         }
-    }
-
-    fn add(&mut self, found: Coincidence) {
-        if found.extent == Overlap::Whole {
-            self.covered.insert(found.later);
-        } else {
-            self.shared.push(found);
-        }
-    }
-
-    /// The objects that are kept out of the tree: those that are completely hidden, those that contain lights or
-    /// the eye, and those that share a surface; the latter two only if they are not too many.
-    pub fn outside_tree(&self) -> &BTreeSet<usize> {
-        &self.outside_tree
     }
 
     /// Returns whether the number that an object gets in the lists is needed.
@@ -213,17 +201,22 @@ impl Contacts {
     }
 }
 
+/// The visible objects with their indices.
+fn visible_objects(objects: &List<Object>) -> impl Iterator<Item = (usize, &Object)> {
+    let objects = objects.iter().enumerate();
+    objects.filter(|(_, object)| object.visible)
+}
+
 /// Returns whether a point may be on a curved object.
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
-    let mut visible = objects.iter().filter(|object| object.visible);
-    visible.any(|object| object.shape.height_per_radius(point) < NEAR_CURVED)
+    visible_objects(objects).any(|(_, object)| object.shape.height_per_radius(point) < NEAR_CURVED)
 }
 
 /// Returns for each point the visible flat objects whose planes contain it.
 fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices> {
     let mut through = vec![ObjectIndices::new(); points.len()];
-    for (index, object) in objects.iter().enumerate() {
-        let Some(piece) = object.shape.plane_piece().filter(|_| object.visible) else {
+    for (index, object) in visible_objects(objects) {
+        let Some(piece) = object.shape.plane_piece() else {
             continue;
         };
         for (point, through) in points.iter().zip(&mut through) {
@@ -237,9 +230,9 @@ fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices
 
 /// Returns for each point the first visible ball on whose surface it is.
 fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
-    let is_ball = |object: &Object| object.visible && matches!(object.shape, Shape::Sphere(_));
-    let balls = objects.iter().enumerate();
-    let balls: Vec<_> = balls.filter(|(_, object)| is_ball(object)).collect();
+    let is_ball = |object: &Object| matches!(object.shape, Shape::Sphere(_));
+    let visible = visible_objects(objects);
+    let balls: Vec<_> = visible.filter(|(_, object)| is_ball(object)).collect();
     let at = |point: &DVec3| {
         let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_CURVED;
         let mut balls = balls.iter();

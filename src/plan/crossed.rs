@@ -1,6 +1,6 @@
 //! How many tests the tree spares the rays of a picture.
 
-use super::bvh::{Bvh, Child};
+use super::bvh::Bvh;
 use super::geometry::{Geometry, PlanCache};
 use super::pack::Plan;
 use super::request::RenderRequest;
@@ -51,9 +51,7 @@ pub fn tests_spared(scene: &Scene, request: &RenderRequest) -> Option<String> {
 impl Geometry<f64> {
     fn count(&self, ray: Ray<f64>, tests: &mut Tests) {
         let listed = self.primitives.len();
-        let mut hit_members = Vec::new();
-        self.bvh.collect_hits(ray, tests, &mut hit_members);
-        for member in hit_members {
+        for member in tests.members_met(&self.bvh, &ray) {
             match (member as usize).checked_sub(listed) {
                 None => tests.primitives += 1,
                 Some(mesh) => {
@@ -62,28 +60,20 @@ impl Geometry<f64> {
                         origin: ray.origin - mesh.centre,
                         ..ray
                     };
-                    let mut hit_members = Vec::new();
-                    mesh.mesh.bvh.collect_hits(ray, tests, &mut hit_members);
-                    tests.primitives += hit_members.len() as u64;
+                    tests.primitives += tests.members_met(&mesh.mesh.bvh, &ray).len() as u64;
                 }
             }
         }
     }
 }
 
-impl Bvh<f64> {
-    /// Adds the members whose boxes a ray hits to `hit_members`.
-    fn collect_hits(&self, ray: Ray<f64>, tests: &mut Tests, hit_members: &mut Vec<u32>) {
-        let mut nodes = vec![0_u32];
-        while let Some(node) = nodes.pop().and_then(|node| self.nodes.get(node as usize)) {
-            tests.boxes += node.count as u64;
-            for index in (0..node.count).filter(|&index| is_hit(&node.bounds(index), &ray)) {
-                match node.child(index) {
-                    Child::Member(member) => hit_members.push(member),
-                    Child::Node(inner) => nodes.push(inner),
-                }
-            }
-        }
+impl Tests {
+    /// The members of a tree whose boxes a ray hits; counts the boxes that are tested.
+    fn members_met(&mut self, bvh: &Bvh<f64>, ray: &Ray<f64>) -> Vec<u32> {
+        bvh.members_where(|bounds| {
+            self.boxes += 1;
+            is_hit(bounds, ray)
+        })
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::iter::ParallelIterator as _;
 use rayon::slice::ParallelSlice as _;
 
-use super::bvh::{Bvh, Child};
+use super::bvh::Child;
 use super::packed_mesh::{MeshInstance, PackedMesh};
 use crate::primitive::{FAR_CAUTION, PackedTriangle};
 use crate::simd::{Real, Vec3};
@@ -47,16 +47,12 @@ impl CulledFaces {
             faces: mesh.triangles.par_chunks(BITS).map(word).collect(),
             nodes: vec![0; mesh.bvh.nodes.len().div_ceil(BITS)],
         };
-        culled_faces.find_nodes(&mesh.bvh);
-        culled_faces
-    }
-
-    fn find_nodes<R: Real>(&mut self, bvh: &Bvh<R>) {
         // A node comes before its child nodes.
-        for (index, node) in bvh.nodes.iter().enumerate().rev() {
-            let all = (0..node.count).all(|slot| self.holds(node.child(slot)));
-            self.nodes[index / BITS] |= u64::from(all) << (index % BITS);
+        for (index, node) in mesh.bvh.nodes.iter().enumerate().rev() {
+            let all = (0..node.count).all(|slot| culled_faces.holds(node.child(slot)));
+            culled_faces.nodes[index / BITS] |= u64::from(all) << (index % BITS);
         }
+        culled_faces
     }
 
     /// Returns whether the child is one of the faces, or a node that contains only such faces.

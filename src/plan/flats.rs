@@ -6,7 +6,7 @@ use crate::primitive::{CornerNormals, Primitive, Primitives, WithPrimitive};
 use crate::simd::{Real, Vec3};
 
 /// Extents of the largest flat bounded surfaces, in scene units; 0 if the stretching of pixels is not computed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Flats<R> {
     /// Of primitives outside of meshes, including spheres: a large sphere seen as the ground looks flat.
     pub loose: R,
@@ -15,18 +15,12 @@ pub struct Flats<R> {
 }
 
 impl<R: Real> Flats<R> {
-    /// For pictures in which the stretching of pixels is not computed.
-    pub const NONE: Self = Self {
-        loose: R::ZERO,
-        in_meshes: R::ZERO,
-    };
-
     /// The extents for a plan.
     pub fn of(primitives: &Primitives<R>, geometry: Option<&Geometry<R>>) -> Self {
         let Some(geometry) = geometry else {
             return Self {
                 loose: largest_of(primitives),
-                ..Self::NONE
+                ..Self::default()
             };
         };
         let meshes = geometry.meshes.iter();

@@ -7,18 +7,19 @@ use glam::DVec3;
 
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
-use super::components::large_components;
+use super::components::{large_components, number_corners};
 use super::contacts::LightContacts;
 use super::culled_faces::CulledFacesCache;
 use super::meshes::Meshes;
-use super::packed_mesh::{MeshInstance, PackedMesh, measure, member};
+use super::packed_mesh::{MeshInstance, PackedMesh, measure};
 use super::request::RenderRequest;
-use super::solids::faces_of_solids;
+use super::solids::{count_corner_users, faces_of_solids, visible_triangles};
 use crate::primitive::{
     BoundingBox, KINDS, Kind, PackedTriangle, Packing, Primitive, Primitives, Tip, Visit,
-    count_corner_users, number_corners,
 };
-use crate::scene::{Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, coincidences};
+use crate::scene::{
+    Accelerator, Coincidence, List, Object, Sampling, Scene, Shape, around, coincidences,
+};
 use crate::simd::{Real, Vec3};
 
 /// Number of objects up to which testing those visible in a tile is faster than traversing a tree.
@@ -69,7 +70,8 @@ pub struct PlanCache<R> {
     light_contacts: Option<(List<Object>, Vec<DVec3>, Arc<LightContacts>)>,
     /// Packed meshes for the next picture, in addition to those of the last one.
     extra_meshes: Meshes<R>,
-    culled_faces: CulledFacesCache<R>,
+    /// The faces of meshes that shadow rays can skip, kept from picture to picture.
+    pub culled_faces: CulledFacesCache<R>,
 }
 
 /// Results of the previous plan that the next one may reuse, in both precisions.
@@ -142,8 +144,8 @@ impl<R: Real> PlanCache<R> {
 
     /// The packed meshes of the last picture.
     fn last_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
-        let last = self.last.iter();
-        last.flat_map(|(_, geometry)| geometry.packed_meshes())
+        let last = self.last.iter().flat_map(|(_, last)| &last.meshes);
+        last.map(|instance| Arc::clone(&instance.mesh))
     }
 
     /// Takes the available packed meshes; only those of the last picture are kept here.
@@ -155,13 +157,8 @@ impl<R: Real> PlanCache<R> {
 
     /// Returns whether the last picture was of these objects.
     fn is_for(&self, objects: &List<Object>) -> bool {
-        let mut last = self.last.iter();
-        last.any(|(source, _)| source.objects.is_same(objects))
-    }
-
-    /// The faces of meshes that shadow rays can skip, kept from picture to picture.
-    pub fn culled_faces(&mut self) -> &mut CulledFacesCache<R> {
-        &mut self.culled_faces
+        let last = self.last.as_ref();
+        last.is_some_and(|(source, _)| source.objects.is_same(objects))
     }
 
     /// Returns the objects that fill the same surface; the previous result if no object has changed.
@@ -228,8 +225,7 @@ pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool
         Accelerator::List => false,
         Accelerator::Bvh => true,
         Accelerator::Auto => {
-            let is_triangle = |object: &&Object| matches!(object.shape, Shape::Triangle(_));
-            let triangles = visible().filter(is_triangle);
+            let triangles = visible_triangles(scene);
             let bounded = visible().filter_map(|object| object.shape.bounds());
             let bounded: Vec<_> = bounded.take(LARGEST_LIST + 1).collect();
             let pixels_each = match request.sampling {
@@ -248,12 +244,9 @@ pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool
 
 /// Returns whether things with these bounds fill a space rather than a shallow field.
 fn fills_space(bounds: &[(DVec3, DVec3)]) -> bool {
-    let low = bounds
-        .iter()
-        .fold(DVec3::INFINITY, |low, one| low.min(one.0));
-    let high = bounds
-        .iter()
-        .fold(DVec3::NEG_INFINITY, |high, one| high.max(one.1));
+    let Some((low, high)) = around(bounds.iter().copied()) else {
+        return false;
+    };
     let sizes = bounds.iter().map(|(low, high)| {
         let [x, y, z] = (*high - *low).to_array();
         // The median of the three: a pole counts as no larger than it is wide.
@@ -350,11 +343,6 @@ impl<R: Real> Geometry<R> {
         coarse.chain(meshes.filter(move |_| is_fine))
     }
 
-    fn packed_meshes(&self) -> impl Iterator<Item = Arc<PackedMesh<R>>> {
-        let meshes = self.meshes.iter();
-        meshes.map(|instance| Arc::clone(&instance.mesh))
-    }
-
     /// The number of primitives, including triangles of meshes.
     pub fn len(&self) -> usize {
         let last = self.meshes.last();
@@ -408,7 +396,7 @@ pub fn measure_loose<R: Real>(primitives: &mut Primitives<R>, separate: &BTreeSe
         let own_triangles = group.iter().map(|&index| &primitives.triangles[index]);
         let mut triangles: Vec<_> = own_triangles.map(PackedTriangle::in_precision).collect();
         let corners = number_corners(&triangles);
-        let mut bvh = Bvh::new(triangles.len(), |number| member(&triangles[number]));
+        let mut bvh = Bvh::new(triangles.len(), |number| Member::of(&triangles[number]));
         let all = &triangles;
         let borders = Borders::of(
             &corners,

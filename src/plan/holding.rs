@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::bvh::{Bvh, Child};
 use super::culled_faces::CulledFaces;
 use super::pack::Plan;
 use super::packed_mesh::{MeshInstance, PackedMesh};
@@ -71,12 +70,15 @@ impl RayEnd {
     ) -> Option<Arc<CulledFaces>> {
         let packed = &*instance.mesh;
         let local = LocalRayEnd::new(self, packed, mesh);
-        let may_hold = any_member(
-            &packed.bvh,
-            |bounds| local.meets(bounds),
-            |face| local.may_be_held(&packed.triangles[face as usize]),
-        );
-        if !may_hold {
+        // Most meshes are far away, and there may be many.
+        if !local.meets(&packed.bvh.bounds) {
+            return None;
+        }
+        let mut near = packed
+            .bvh
+            .members_where(|bounds| local.meets(bounds))
+            .into_iter();
+        if !near.any(|face| local.may_be_held(&packed.triangles[face as usize])) {
             return None; // Only now is it worth checking all faces.
         }
         let faces = mesh.source.triangles().corners().zip(mesh.world_corners());
@@ -151,29 +153,4 @@ fn sorted_corners<R: Real>(corners: [Vec3<R>; 3]) -> [[u64; 3]; 3] {
     let mut corners = corners.map(bits);
     corners.sort_unstable();
     corners
-}
-
-/// Returns whether `is_match` holds for any member in the boxes for which `is_relevant` holds.
-fn any_member<R: Real>(
-    bvh: &Bvh<R>,
-    is_relevant: impl Fn(&BoundingBox<R>) -> bool,
-    is_match: impl Fn(u32) -> bool,
-) -> bool {
-    if !is_relevant(&bvh.bounds) {
-        return false; // Most meshes are far away, and there may be many.
-    }
-    let mut waiting = vec![0];
-    while let Some(node) = waiting
-        .pop()
-        .and_then(|index: u32| bvh.nodes.get(index as usize))
-    {
-        for index in (0..node.count).filter(|&index| is_relevant(&node.bounds(index))) {
-            match node.child(index) {
-                Child::Node(inner) => waiting.push(inner),
-                Child::Member(member) if is_match(member) => return true,
-                Child::Member(_) => {}
-            }
-        }
-    }
-    false
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::contacts::LightContacts;
 use super::culled_faces::CulledFaces;
 use super::geometry::Geometry;
 use super::plane_occluders::PlaneOccluder;
@@ -79,18 +80,13 @@ impl<R: Real> PointLight<R> {
     }
 }
 
-/// Packs the lights that shine on what the eye can reach. By index of a light, `touches` returns whether it may be
-/// on a surface, `holders` the numbers of the primitives that contain it, and `ball` the index of the ball that
-/// contains it.
+/// Packs the lights that shine on what the eye can reach. `number` returns the number of the primitive of an object, if
+/// that is in contact with something and not in the tree.
 pub fn pack_lights<R: Real>(
     scene: &Scene,
     centre: DVec3,
     (occluders, model): (&[PlaneOccluder], Model),
-    (touches, holders, ball): (
-        impl Fn(usize) -> bool,
-        impl Fn(usize) -> Vec<usize>,
-        impl Fn(usize) -> Option<usize>,
-    ),
+    (contacts, number): (&LightContacts, impl Fn(&usize) -> Option<usize>),
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
     // Whether a light is in the plane of any face of a mesh is unknown.
@@ -105,8 +101,12 @@ pub fn pack_lights<R: Real>(
         })
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
-            let may_be_on_surface = touches(index);
-            let ball = ball(index).map(|object| &scene.objects[object].shape);
+            let may_be_on_surface = contacts.touching.contains(&index);
+            let flat = contacts.held_by.get(index).into_iter().flatten();
+            let ball = contacts.on_balls.get(index).copied().flatten();
+            // If it is in the tree, rays test it like everything else.
+            let ball = ball.filter(|object| number(object).is_some());
+            let holding_shape = ball.map(|object| &scene.objects[object].shape);
             let world_rounding = light.position.abs().max_element() * roundings::<f64>();
             PointLight {
                 position,
@@ -114,8 +114,8 @@ pub fn pack_lights<R: Real>(
                 intensity: R::from_f64(light.intensity),
                 shadow_culled_faces: Vec::new(),
                 culled_faces: Vec::new(),
-                holders: holders(index),
-                ball: HoldingBall::new(ball, light.position),
+                holders: flat.chain(&ball).filter_map(&number).collect(),
+                ball: HoldingBall::new(holding_shape, light.position),
                 rounding: position.max_abs() * roundings() + R::from_f64(world_rounding),
                 may_be_in_plane: may_be_on_surface || has_meshes,
                 may_be_on_surface,

@@ -44,7 +44,7 @@ pub fn needs(scene: &Scene, request: &RenderRequest) -> Vec<Need> {
         markers(scene, &plan),
         hidden(scene),
         faces(&plan),
-        accelerator(&plan, request, visible_faces(scene)),
+        accelerator(scene, request, &plan),
         normals(scene),
         highlights(scene, request, &plan),
         edges(request),
@@ -281,8 +281,9 @@ fn faces(plan: &Plan<f64>) -> Need {
     )
 }
 
-fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need {
+fn accelerator(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need {
     let rule = ACCELERATOR;
+    let faces: usize = scene.visible_objects().map(Object::faces).sum();
     let bounded = plan.bounded() + faces;
     if plan.screen.is_none() {
         return need(rule, "every primitive for every ray", FAILING, "nothing");
@@ -322,8 +323,8 @@ fn accelerator(plan: &Plan<f64>, request: &RenderRequest, faces: usize) -> Need 
 
 fn normals(scene: &Scene) -> Need {
     let rule = "normals";
-    let is_smooth = |object: &&Object| object.visible && object.is_smooth();
-    match scene.objects.iter().filter(is_smooth).count() {
+    let is_smooth = |object: &&Object| object.is_smooth();
+    match scene.visible_objects().filter(is_smooth).count() {
         0 => need(
             rule,
             "one normal per face",
@@ -337,10 +338,6 @@ fn normals(scene: &Scene) -> Need {
             "nothing: secondary rays start on the curved surface, so that its faces do not shadow it",
         ),
     }
-}
-
-fn visible_faces(scene: &Scene) -> usize {
-    scene.visible_objects().map(Object::faces).sum()
 }
 
 fn highlights(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need {

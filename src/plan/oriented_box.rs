@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::primitive::{BoundingBox, PackedTriangle};
+use crate::scene::around;
 use crate::simd::{Real, Vec3};
 
 /// Largest surface of an oriented box that is worth a test, as a share of the surface of the axis-aligned box.
@@ -42,20 +43,12 @@ impl<R: Real> OrientedBox<R> {
         let aside = |corner: DVec3| (corner - start).reject_from_normalized(along);
         let widest = aside(farthest(&|corner| aside(corner).length_squared())?);
         // Rejected once more: what is left of a short vector may not be perpendicular.
-        let across = widest.try_normalize().map_or_else(
-            || along.any_orthonormal_vector(),
-            |across| {
-                across
-                    .reject_from_normalized(along)
-                    .normalize_or(along.any_orthonormal_vector())
-            },
-        );
+        let across = widest.normalize_or_zero().reject_from_normalized(along);
+        let across = across.normalize_or(along.any_orthonormal_vector());
         let axes = DMat3::from_cols(along, across, along.cross(across));
         let into = axes.transpose();
-        let (low, high) = corners().map(|corner| into * corner).fold(
-            (DVec3::INFINITY, DVec3::NEG_INFINITY),
-            |(low, high), corner| (low.min(corner), high.max(corner)),
-        );
+        let turned = corners().map(|corner| into * corner);
+        let (low, high) = around(turned.map(|corner| (corner, corner)))?;
         let half = high * 0.5 - low * 0.5;
         let aligned = bounds.high.to_dvec3() * 0.5 - bounds.low.to_dvec3() * 0.5;
         (surface(half) < WORTH_TESTING * surface(aligned)).then(|| Self {

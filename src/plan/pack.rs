@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::balls::{Balls, balls_of};
+use super::balls::Balls;
 use super::contacts::{Contacts, Tie};
 use super::culled_faces::CulledFaces;
 use super::flats::Flats;
@@ -19,11 +19,10 @@ use super::plane_occluders::classify_planes;
 use super::ray_origin::{RayOrigin, ray_origin};
 use super::request::{Model, RenderRequest};
 use super::show::Show;
-use super::solids::faces_of_solids;
+use super::solids::{count_corner_users, faces_of_solids};
 use super::view::View;
 use crate::primitive::{
     Blur, BoundingBox, CAUTION, KINDS, Packed, Packing, Primitives, Projector, Rectangle,
-    count_corner_users,
 };
 use crate::scene::{
     Accelerator, Camera, CoordinateFrame, LightObj, Methods, Object, Sampling, Scene, Shape,
@@ -76,8 +75,6 @@ pub struct Plan<R> {
     pub screen: Option<[Vec<Rectangle>; KINDS]>,
     /// Balls around the bounded primitives of `primitives`.
     pub balls: Balls<R>,
-    /// The primitive number of each of these balls.
-    pub ball_numbers: Vec<u32>,
     /// For each triangle, whether it can be skipped for camera rays; empty if none can.
     pub camera_culled_faces: Vec<bool>,
     /// Numbers of primitives whose planes contain the eye, or the whole window from which parallel rays start.
@@ -148,7 +145,6 @@ impl<R: Real> Plan<R> {
             shadows_behind: model == Model::Everything,
             screen: may_cull.then(Default::default),
             balls: Balls::default(),
-            ball_numbers: Vec::new(),
             camera_culled_faces: Vec::new(),
             edge_on: Vec::new(),
             unseen_faces: Vec::new(),
@@ -156,7 +152,7 @@ impl<R: Real> Plan<R> {
             ties: Vec::new(),
             clearance: R::ZERO,
             visible_objects: scene.visible_objects().count(),
-            flats: Flats::NONE,
+            flats: Flats::default(),
             farthest: R::from_f64(frame.farthest),
             extent: R::from_f64(frame.extent),
             blur: Blur::NONE,
@@ -168,58 +164,43 @@ impl<R: Real> Plan<R> {
         let projector = projector.as_ref();
         if uses_tree(scene, request, may_cull) {
             let geometry =
-                cache.geometry(scene, (centre, contacts.outside_tree()), request.sampling);
+                cache.geometry(scene, (centre, &contacts.outside_tree), request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
-            plan.take_geometry(geometry, projector, centre);
+            plan.take_geometry(geometry, projector);
         }
         let numbers = plan.pack(scene, &contacts, projector);
-        let is_outside = |index: &usize| contacts.outside_tree().contains(index);
+        let is_outside = |index: &usize| contacts.outside_tree.contains(index);
         let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_primitive = contacts.eye_object.as_ref().and_then(number);
         plan.find_ties(scene, (request, &contacts), &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
-        let ball = |light: usize| {
-            let ball = contacts.lights.on_balls.get(light).copied().flatten();
-            // If it is in the tree, rays test it like everything else.
-            ball.filter(|index| number(index).is_some())
-        };
-        let holders = |light: usize| {
-            let flat = contacts.lights.held_by.get(light).into_iter().flatten();
-            flat.chain(&ball(light)).filter_map(number).collect()
-        };
-        let touches = |light: usize| contacts.lights.touching.contains(&light);
-        let light_contacts = (touches, holders, ball);
+        let light_contacts = (&*contacts.lights, number);
         plan.lights = pack_lights(scene, centre, (occluders, model), light_contacts);
         plan.find_held_faces(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
-            let outside_tree = contacts.outside_tree().iter().filter_map(number).collect();
+            let outside_tree = contacts.outside_tree.iter().filter_map(number).collect();
             measure_loose(&mut plan.primitives, &outside_tree);
             plan.flats = Flats::of(&plan.primitives, plan.geometry.as_deref());
         }
         if may_cull {
-            plan.pack_balls();
+            plan.balls = Balls::around(&plan.primitives);
             // A ray that leaks through a face must not reveal that the faces behind it were left out.
             if request.methods.is_tight() {
-                plan.drop_far_faces(scene, request, centre);
-                plan.drop_lit_faces(scene, request, cache.culled_faces());
+                plan.drop_far_faces(scene, request);
+                plan.drop_lit_faces(scene, request, &mut cache.culled_faces);
             }
         }
-        cache.culled_faces().end_picture();
+        cache.culled_faces.end_picture();
         plan
     }
 
     /// Stores the geometry of the BVH and the screen rectangles that enclose it.
-    fn take_geometry(
-        &mut self,
-        geometry: Arc<Geometry<R>>,
-        projector: Option<&Projector>,
-        centre: DVec3,
-    ) {
+    fn take_geometry(&mut self, geometry: Arc<Geometry<R>>, projector: Option<&Projector>) {
         let rectangle = |bounds: BoundingBox<R>| {
             let (middle, radius) = bounds.ball();
             let radius = radius.to_f64() * (1.0 + CAUTION);
-            Some(projector?.ball(middle.to_dvec3() + centre, radius))
+            Some(projector?.ball(middle.to_dvec3() + self.centre, radius))
         };
         self.outline = geometry.outline().filter_map(rectangle).collect();
         self.geometry = Some(geometry);
@@ -234,7 +215,7 @@ impl<R: Real> Plan<R> {
         projector: Option<&Projector>,
     ) -> HashMap<usize, usize> {
         // With a tree, the only listed triangles are those that touch something.
-        let has_triangles = self.geometry.is_none() || !contacts.outside_tree().is_empty();
+        let has_triangles = self.geometry.is_none() || !contacts.outside_tree.is_empty();
         let (corner_users, faces_of_solids) = if has_triangles {
             (count_corner_users(scene), faces_of_solids(scene))
         } else {
@@ -249,27 +230,21 @@ impl<R: Real> Plan<R> {
         if scene.light_visualization {
             self.pack_markers(scene, &packing);
         }
-        let outside_tree = contacts.outside_tree();
+        let has_tree = self.geometry.is_some();
         let is_listed = |index: usize, object: &Object| {
-            let belongs_in_tree = self.geometry.is_some() && belongs_in_tree(object);
-            object.visible && (!belongs_in_tree || outside_tree.contains(&index))
+            let belongs_in_tree = has_tree && belongs_in_tree(object);
+            object.visible && (!belongs_in_tree || contacts.outside_tree.contains(&index))
         };
-        let objects = scene.objects.iter().enumerate();
-        let listed: Vec<_> = objects
-            .filter(|(index, object)| is_listed(*index, object))
-            .collect();
         let mut numbered = Vec::new();
-        for (index, object) in listed {
-            if contacts.covered.contains(&index) {
+        for (index, object) in scene.objects.iter().enumerate() {
+            if !is_listed(index, object) || contacts.covered.contains(&index) {
                 continue;
             }
             let material = material_number(scene, &object.color_pack);
             let packed = self.push(&object.shape, material, &packing);
-            numbered.extend(
-                packed
-                    .filter(|_| contacts.needs_number(index))
-                    .map(|packed| (index, packed)),
-            );
+            if let Some(packed) = packed.filter(|_| contacts.needs_number(index)) {
+                numbered.push((index, packed));
+            }
         }
         let firsts = self.primitives.firsts();
         let number = |packed: &Packed| firsts[packed.kind as usize] + packed.index;
@@ -301,12 +276,6 @@ impl<R: Real> Plan<R> {
             screen[packed.kind as usize].push(rectangle);
         }
         Some(packed)
-    }
-
-    fn pack_balls(&mut self) {
-        let balls = balls_of(&self.primitives);
-        self.balls = Balls::new(balls.iter().map(|(_, ball)| ball));
-        self.ball_numbers = balls.iter().map(|&(number, _)| number).collect();
     }
 
     /// The geometry, with the number of its first primitive.

@@ -15,10 +15,11 @@ use super::cast::is_outside;
 use super::components::{first_of_components, volume};
 use super::oriented_box::OrientedBox;
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::measures;
+use super::thickness::thicknesses;
+use super::tips::tips;
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive};
-use crate::scene::Mesh;
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
+use crate::scene::{Mesh, around};
 use crate::simd::{Real, Vec3};
 
 /// The triangles of a mesh, rotated and scaled as in the world and relative to the middle of their bounding box:
@@ -82,33 +83,19 @@ impl MeshKey {
     }
 }
 
-/// The rotated and scaled points of a mesh.
-struct Points {
-    /// Relative to `middle`.
-    points: Vec<DVec3>,
-    /// The middle of the box around the corners, relative to the mesh's origin.
-    middle: DVec3,
-}
-
-impl Points {
-    fn of(source: &Triangles, linear: DMat3) -> Self {
-        let mut points: Vec<DVec3> = source
-            .points()
-            .iter()
-            .map(|&point| linear * point)
-            .collect();
-        let named = source.faces().as_flattened().iter();
-        let corners = named.map(|&corner| points[corner as usize]);
-        let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let (low, high) = corners.fold(none, |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        });
-        let middle = low * 0.5 + high * 0.5;
-        for point in &mut points {
-            *point -= middle;
-        }
-        Self { points, middle }
+/// The rotated and scaled points of a mesh, relative to the middle of the box around its corners; and that middle,
+/// relative to the mesh's origin.
+fn points_and_middle(source: &Triangles, linear: DMat3) -> (Vec<DVec3>, DVec3) {
+    let points = source.points().iter().map(|&point| linear * point);
+    let mut points: Vec<DVec3> = points.collect();
+    let named = source.faces().as_flattened().iter();
+    let corners = named.map(|&corner| points[corner as usize]);
+    let (low, high) = around(corners.map(|corner| (corner, corner))).unwrap_or_default();
+    let middle = low * 0.5 + high * 0.5;
+    for point in &mut points {
+        *point -= middle;
     }
+    (points, middle)
 }
 
 /// A mesh at its position.
@@ -147,7 +134,7 @@ impl PackedMesh<f64> {
 
     fn of(mesh: &Mesh) -> Self {
         let linear = mesh.linear_transform();
-        let Points { points, middle } = Points::of(mesh.source.triangles(), linear);
+        let (points, middle) = points_and_middle(mesh.source.triangles(), linear);
         let is_mirrored = linear.determinant() < 0.0;
         // Clockwise seen from outside, as in the source.
         let face = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
@@ -222,7 +209,7 @@ impl<R: Real> PackedMesh<R> {
     /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
         let linear = mesh.linear_transform();
-        let Points { points, middle } = Points::of(&self.source, linear);
+        let (points, middle) = points_and_middle(&self.source, linear);
         let faces = self.faces.par_iter().zip(&self.triangles);
         let triangles = faces.map(|(face, before)| {
             let corners = face.map(|point| points[point as usize]);
@@ -239,7 +226,7 @@ impl<R: Real> PackedMesh<R> {
             return None;
         }
         let mut bvh = self.bvh.in_precision();
-        bvh.refit(|number| member(&triangles[number]));
+        bvh.refit(|number| Member::of(&triangles[number]));
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
@@ -302,13 +289,14 @@ pub fn measure(
     bvh: &mut Bvh<f64>,
     borders: &Borders,
 ) {
-    let measures = measures(triangles, faces, bvh, borders);
-    let measured = measures.thicknesses.iter().zip(&measures.tips);
-    for (triangle, (&thickness, &tip)) in triangles.iter_mut().zip(measured) {
+    let thicknesses = thicknesses(triangles, bvh, borders);
+    let border_faces = borders.widths.iter().map(|&(face, _)| face);
+    let tips = tips(triangles, faces, border_faces);
+    for ((triangle, thickness), tip) in triangles.iter_mut().zip(thicknesses).zip(tips) {
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.tip = tip;
     }
-    bvh.refit(|number| member(&triangles[number]));
+    bvh.refit(|number| Member::of(&triangles[number]));
 }
 
 /// The normals of faces that are shaded as one curved surface; empty if the mesh is flat.
@@ -336,14 +324,6 @@ fn reach<R: Real>(triangles: &[PackedTriangle<R>], from: Vec3<R>) -> R {
 fn longest<R: Real>(triangles: &[PackedTriangle<R>]) -> R {
     let edges = triangles.iter().map(|triangle| triangle.longest);
     edges.fold(R::ZERO, R::max)
-}
-
-/// A triangle as a member of a tree.
-pub fn member(triangle: &PackedTriangle<f64>) -> Member<f64> {
-    Member {
-        bounds: BoundingBox::around(&triangle.corners),
-        thickness: Primitive::thickness(triangle),
-    }
 }
 
 impl<R: Real> MeshInstance<R> {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::closeness::visible_pieces;
 use super::request::{Model, RenderRequest};
 use crate::scene::{Outline, PlanePiece, Projection, Scene};
 
@@ -29,8 +30,7 @@ pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<Pla
     if is_parallel || !request.methods.is_sound() || request.model == Model::Everything {
         return None;
     }
-    let visible = scene.visible_objects();
-    let pieces = visible.filter_map(|object| object.shape.plane_piece());
+    let pieces = visible_pieces(scene);
     let planes = pieces.filter(|piece| piece.outline == Outline::Endless);
     planes
         .map(|piece| {

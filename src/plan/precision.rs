@@ -98,11 +98,13 @@ fn is_uncountable(scene: &Scene) -> bool {
 
 /// Returns whether the errors of single precision would show in the picture.
 pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
-    let is_out_of_sight = match request.projection_of(&scene.camera) {
-        Projection::Orthographic => is_far_in_parallel(scene),
+    let eye = scene.camera.position;
+    // Parallel rays start from a window, not from a point.
+    let (is_out_of_sight, start) = match request.projection_of(&scene.camera) {
+        Projection::Orthographic => (is_far_in_parallel(scene), None),
         Projection::Perspective => {
             let pixels = scene.camera.projection_distance * f64::from(request.height);
-            pixels > MAX_DISTANCE_IN_PIXELS
+            (pixels > MAX_DISTANCE_IN_PIXELS, Some(eye))
         }
     };
     if is_out_of_sight {
@@ -112,19 +114,15 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
         return false;
     };
     let centre = (low + high) * 0.5;
-    let eye = scene.camera.position;
     let extent = (high - low).length().max((eye - centre).length());
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
     }
     let allows_finer_features = allows_finer_features(scene, request);
-    // Parallel rays start from a window, not from a point.
-    let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
-    let point = Some(eye).filter(|_| is_perspective);
     let size = (high - low).length();
     // Samples that search for an edge inside a pixel are not filtered, and layers would show in all of them.
     if has_layers(scene, (centre, extent))
-        || !allows_finer_features && is_at_border(scene, point, size)
+        || !allows_finer_features && is_at_border(scene, start, size)
     {
         return true;
     }
@@ -141,14 +139,11 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     let visible = scene.visible_objects();
     visible.map(|object| &object.shape).any(|shape| {
         is_almost_on(shape, eye)
-            || match shape.feature() {
-                None => false,
-                Some((at, size)) => {
-                    let size = size * smaller;
-                    (eye - at).length().max(wall) > MAX_DISTANCE_PER_RADIUS * size
-                        || extent > MAX_EXTENT_PER_FEATURE * size
-                }
-            }
+            || shape.feature().is_some_and(|(at, size)| {
+                let size = size * smaller;
+                (eye - at).length().max(wall) > MAX_DISTANCE_PER_RADIUS * size
+                    || extent > MAX_EXTENT_PER_FEATURE * size
+            })
     })
 }
 

@@ -6,7 +6,8 @@ use rayon::iter::{
     ParallelIterator as _,
 };
 
-use crate::primitive::{CornerNormals, PackedTriangle, number_corners};
+use super::components::number_corners;
+use crate::primitive::{CornerNormals, PackedTriangle};
 use crate::simd::{Real, Vec3};
 
 /// Number of faces at a corner above which they stay flat there, since each is compared with all others.

@@ -5,9 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::components::components_at_corners;
-use crate::mesh::are_closed;
-use crate::primitive::{Corner, PackedTriangle, corner_key};
+use super::components::{components_at_corners, numbering};
+use crate::mesh::{are_closed, position_key};
+use crate::primitive::{Corner, PackedTriangle};
 use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
@@ -62,16 +62,31 @@ impl Solids {
     }
 }
 
-/// The corners of the faces of all solids formed by visible triangles of a scene.
-pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
+/// The corners of the visible triangles of a scene.
+pub fn visible_triangles(scene: &Scene) -> impl Iterator<Item = [DVec3; 3]> {
     let visible = scene.visible_objects();
-    let triangles = visible.filter_map(|object| match &object.shape {
+    visible.filter_map(|object| match &object.shape {
         Shape::Triangle(triangle) => Some(triangle.corners()),
         _ => None,
-    });
-    let Solids { triangles, solids } = Solids::made_of(triangles.collect());
+    })
+}
+
+/// Counts the visible triangles that meet at each corner.
+pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
+    let mut users = HashMap::new();
+    for point in visible_triangles(scene).flatten() {
+        *users.entry(position_key(point)).or_insert(0) += 1;
+    }
+    users
+}
+
+/// The corners of the faces of all solids formed by visible triangles of a scene.
+pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
+    let Solids { triangles, solids } = Solids::made_of(visible_triangles(scene).collect());
     let faces = solids.into_iter().flatten();
-    faces.map(|face| triangles[face].map(corner_key)).collect()
+    faces
+        .map(|face| triangles[face].map(position_key))
+        .collect()
 }
 
 /// The unit normal outwards, the distance from the origin along it, and the tolerance for points on the face.
@@ -84,17 +99,12 @@ fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
 
 /// Groups triangles that are connected by common corners.
 fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
-    let mut numbers = HashMap::new();
-    let mut number = |point: DVec3| {
-        let next = numbers.len() as u32;
-        *numbers.entry(corner_key(point)).or_insert(next)
-    };
-    let points: Vec<_> = triangles
-        .iter()
-        .map(|corners| corners.map(&mut number))
-        .collect();
+    let mut number = numbering();
+    let mut number = |corner: DVec3| number(position_key(corner));
+    let faces = triangles.iter().map(|corners| corners.map(&mut number));
+    let faces: Vec<_> = faces.collect();
     let mut found: Vec<Vec<usize>> = Vec::new();
-    for (index, component) in components_at_corners(&points).into_iter().enumerate() {
+    for (index, component) in components_at_corners(&faces).into_iter().enumerate() {
         // Components are numbered in order of their first triangle.
         found.resize_with(found.len().max(component as usize + 1), Vec::new);
         found[component as usize].push(index);
@@ -117,18 +127,10 @@ fn is_convex(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Scene, Shape, Triangle};
 
     /// The demo's pyramid.
     fn pyramid() -> Vec<[DVec3; 3]> {
-        let scene = Scene::demo();
-        let shapes = scene.objects.iter().map(|object| &object.shape);
-        shapes
-            .filter_map(|shape| match *shape {
-                Shape::Triangle(Triangle { a, b, c }) => Some([a, b, c]),
-                _ => None,
-            })
-            .collect()
+        visible_triangles(&Scene::demo()).collect()
     }
 
     fn away(triangles: Vec<[DVec3; 3]>, point: DVec3) -> usize {

@@ -7,8 +7,7 @@ use super::borders::Borders;
 use super::bvh::{Bvh, Node};
 use super::cast::cast;
 use super::components::inside_out;
-use super::tips::tips;
-use crate::primitive::{PackedTriangle, Tip};
+use crate::primitive::PackedTriangle;
 use crate::simd::Vec3;
 
 /// Of the faces in a node, one in this many is measured for all of them, and also each that faces in a new direction.
@@ -25,14 +24,12 @@ const MEASURED_POINT: [f64; 3] = [0.38, 0.34, 0.28];
 /// Measures the least thickness of the mesh at each triangle: through the inside to the opposite side (Shapira,
 /// Shamir and Cohen-Or, "Consistent mesh partitioning and skeletonisation using the shape diameter function", The
 /// Visual Computer 24, 2008; with one ray), whichever way its faces are wound, and along the surface from border to
-/// border. Infinity where there is neither. `points` numbers the corners of each triangle, and `borders` are those
-/// of the triangles.
-pub fn measures(
+/// border. Infinity where there is neither. `borders` are those of the triangles.
+pub fn thicknesses(
     triangles: &[PackedTriangle<f64>],
-    points: &[[u32; 3]],
     bvh: &Bvh<f64>,
     borders: &Borders,
-) -> Measures {
+) -> Vec<f64> {
     let faces = Faces {
         triangles,
         bvh,
@@ -43,14 +40,7 @@ pub fn measures(
         let thickness = &mut thicknesses[face as usize];
         *thickness = thickness.min(width);
     }
-    Measures {
-        tips: tips(
-            triangles,
-            points,
-            borders.widths.iter().map(|&(face, _)| face),
-        ),
-        thicknesses,
-    }
+    thicknesses
 }
 
 /// The faces of a mesh with their tree.
@@ -60,14 +50,6 @@ struct Faces<'a> {
     bvh: &'a Bvh<f64>,
     /// Which of the faces have normals that point inwards.
     inside_out: Vec<bool>,
-}
-
-/// The measures of triangles.
-pub struct Measures {
-    /// The least thickness of the mesh at each triangle.
-    pub thicknesses: Vec<f64>,
-    /// For each triangle, where it tapers, see [`tips`].
-    pub tips: Vec<Tip>,
 }
 
 impl Faces<'_> {
@@ -110,11 +92,10 @@ impl Faces<'_> {
             -normal
         };
         let middle = a * weight_a + b * weight_b + c * weight_c;
-        let is_other = |other: u32| other as usize != face;
         let mut nearest = f64::INFINITY;
         let ray = ((middle, inwards), MOST_NODES);
-        let is_complete = cast(self.triangles, self.bvh, ray, |face, t| {
-            if is_other(face) {
+        let is_complete = cast(self.triangles, self.bvh, ray, |other, t| {
+            if other as usize != face {
                 nearest = nearest.min(t);
             }
             nearest
@@ -132,21 +113,16 @@ impl Faces<'_> {
 mod tests {
     use super::*;
     use crate::plan::bvh::Member;
-    use crate::primitive::{BoundingBox, number_corners};
+    use crate::plan::components::number_corners;
 
     fn found(corners: &[[Vec3<f64>; 3]]) -> Vec<f64> {
         let packed =
             |corners: &[Vec3<f64>; 3]| PackedTriangle::of_mesh(corners.map(Vec3::to_dvec3));
         let triangles: Vec<_> = corners.iter().filter_map(packed).collect();
-        let member = |triangle: &PackedTriangle<f64>| Member {
-            bounds: BoundingBox::around(&triangle.corners),
-            thickness: triangle.thickness,
-        };
-        let members: Vec<_> = triangles.iter().map(member).collect();
         let points = number_corners(&triangles);
         let borders = Borders::of(&points, |face| triangles[face as usize].corners, |_| 0);
-        let bvh = Bvh::new(members.len(), |n| members[n]);
-        measures(&triangles, &points, &bvh, &borders).thicknesses
+        let bvh = Bvh::new(triangles.len(), |n| Member::of(&triangles[n]));
+        thicknesses(&triangles, &bvh, &borders)
     }
 
     fn at(x: f64, y: f64, z: f64) -> Vec3<f64> {

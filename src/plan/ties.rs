@@ -34,23 +34,19 @@ impl<R: Real> Plan<R> {
         let unlike = relevant.iter().filter(|found| !look_alike(found));
         let unlike: HashSet<usize> = unlike.flat_map(|f| [f.later, f.earlier]).collect();
         let has_effect =
-            |found: &Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
-        let mut ties: Vec<(Range<usize>, Vec<Range<usize>>)> = Vec::new();
-        for found in relevant.iter().filter(|found| has_effect(found)) {
-            let numbers = |index| self.numbers_at(index, listed);
-            let (later, earlier) = (numbers(found.later), numbers(found.earlier));
-            let (Some(later), Some(earlier)) = (later, earlier) else {
-                continue;
-            };
-            match ties.last_mut().filter(|(numbers, _)| *numbers == later) {
-                Some((_, over)) => over.push(earlier),
-                None => ties.push((later, vec![earlier])),
-            }
-        }
-        let first_in_tree = self.primitives.len();
-        let ties = ties.into_iter().map(|(numbers, over)| Tie {
-            numbers,
-            over: RankedObjects::new(over, first_in_tree),
+            |found: &&Coincidence| unlike.contains(&found.later) && unlike.contains(&found.earlier);
+        let effective = relevant.iter().copied().filter(has_effect);
+        let effective: Vec<&Coincidence> = effective.collect();
+        let of_one_object = effective.chunk_by(|one, other| one.later == other.later);
+        let ties = of_one_object.filter_map(|found| {
+            let over = found.iter();
+            let over = over.filter_map(|found| self.numbers_at(found.earlier, listed));
+            let over: Vec<_> = over.collect();
+            let numbers = self.numbers_at(found[0].later, listed);
+            Some(Tie {
+                numbers: numbers.filter(|_| !over.is_empty())?,
+                over: RankedObjects::new(over, self.primitives.len()),
+            })
         });
         let mut ties: Vec<Tie> = ties.collect();
         ties.sort_by_key(|tie| tie.numbers.start);

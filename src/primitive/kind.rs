@@ -14,7 +14,7 @@ use super::ray::Ray;
 use crate::scene::{Describe, Methods};
 use crate::simd::{Real, SimdFloat, Vec3};
 
-/// The bits of a corner's coordinates.
+/// The bits of a corner's coordinates, see [`crate::mesh::position_key`].
 pub type Corner = [u64; 3];
 
 /// What packing needs to know about the scene.
@@ -121,11 +121,6 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
 
     /// A point of it, and the radius around that point within which all of it lies.
     fn reach(&self) -> (Vec3<R>, R);
-
-    /// Returns whether this primitive alone hides all of `ball` from `light`; may return `false` even if it does.
-    fn hides(&self, _light: DVec3, _ball: &Ball) -> bool {
-        false
-    }
 
     /// Derives the data of the test from unit directions.
     fn prepare<L: SimdFloat<Real = R>>(directions: Vec3<L>) -> Self::Prepared<L>;

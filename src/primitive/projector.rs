@@ -1,5 +1,7 @@
 //! Positions in the picture, as pixel rectangles that are never too small.
 
+use std::ops::Range;
+
 use glam::{DMat3, DVec3};
 
 use crate::scene::{Camera, Projection};
@@ -29,9 +31,9 @@ const ANYWHERE: Extent = Extent {
 };
 
 impl Extent {
-    /// Returns whether the range contains any of the pixels `from..to`.
-    pub fn meets(self, from: usize, to: usize) -> bool {
-        self.from < to as f32 && self.to >= from as f32
+    /// Returns whether the range contains any of these pixels.
+    pub fn meets(self, pixels: &Range<usize>) -> bool {
+        self.from < pixels.end as f32 && self.to >= pixels.start as f32
     }
 }
 
@@ -81,10 +83,7 @@ impl Projector {
             }
             Projection::Perspective => tangents,
         };
-        Rectangle {
-            columns: self.columns(range(x, depth, radius)),
-            rows: self.rows(range(y, depth, radius)),
-        }
+        self.rectangle(range(x, depth, radius), range(y, depth, radius))
     }
 
     /// The rectangle around a triangle.
@@ -92,10 +91,7 @@ impl Projector {
         let on_image_plane = self.on_image_plane(corners);
         let range =
             |axis: usize| on_image_plane.map(|corners| bounds(corners.map(|point| point[axis])));
-        Rectangle {
-            columns: self.columns(range(0)),
-            rows: self.rows(range(1)),
-        }
+        self.rectangle(range(0), range(1))
     }
 
     /// The corners of a triangle on the image plane, to the right of and above its middle; `None` if one is not
@@ -115,29 +111,20 @@ impl Projector {
         }
     }
 
-    fn extent(&self, from: f64, to: f64) -> Extent {
-        Extent {
-            from: (from - self.margin).floor() as f32,
-            to: (to + self.margin).ceil() as f32,
+    /// The rectangle of two ranges on the image plane, to the right of and above its middle; `None` stands for
+    /// anywhere.
+    fn rectangle(&self, across: Option<(f64, f64)>, up: Option<(f64, f64)>) -> Rectangle {
+        let extent = |middle: f64, range: Option<(f64, f64)>| {
+            range.map_or(ANYWHERE, |(from, to)| Extent {
+                from: (middle + from * self.scale - self.margin).floor() as f32,
+                to: (middle + to * self.scale + self.margin).ceil() as f32,
+            })
+        };
+        let down = up.map(|(from, to)| (-to, -from));
+        Rectangle {
+            columns: extent(self.half_size.0, across),
+            rows: extent(self.half_size.1, down),
         }
-    }
-
-    fn columns(&self, range: Option<(f64, f64)>) -> Extent {
-        range.map_or(ANYWHERE, |(from, to)| {
-            self.extent(
-                self.half_size.0 + from * self.scale,
-                self.half_size.0 + to * self.scale,
-            )
-        })
-    }
-
-    fn rows(&self, range: Option<(f64, f64)>) -> Extent {
-        range.map_or(ANYWHERE, |(from, to)| {
-            self.extent(
-                self.half_size.1 - to * self.scale,
-                self.half_size.1 - from * self.scale,
-            )
-        })
     }
 }
 

@@ -1,7 +1,5 @@
 //! Ray against sphere.
 
-use glam::DVec3;
-
 use super::ball::Ball;
 use super::blur::Blur;
 use super::bounding_box::BoundingBox;
@@ -106,10 +104,6 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
 
     fn reach(&self) -> (Vec3<R>, R) {
         (self.center, self.radius)
-    }
-
-    fn hides(&self, light: DVec3, ball: &Ball) -> bool {
-        self.ball().is_some_and(|own| own.hides(light, ball))
     }
 
     #[inline(always)]
@@ -251,6 +245,7 @@ fn classic<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use proptest::prelude::*;
 
     /// A ray from `ratio` radii away past a unit sphere at `miss` radii from its centre, turned by three angles so

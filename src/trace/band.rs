@@ -1,9 +1,8 @@
 //! Traces the tiles that one thread takes, one after the other.
 
-use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-use super::candidates::{Candidates, Span};
+use super::candidates::Candidates;
 use super::canvas::Canvas;
 use super::control::RenderControl;
 use super::engine::{Engine, Retracer, Workspace};
@@ -31,10 +30,8 @@ pub struct Band<'a, R> {
     pub in_squares: bool,
     /// The part of the picture to trace; `None` for all of it.
     pub region: Option<Region>,
-    /// The columns of the picture that it covers.
-    pub columns: Range<usize>,
-    /// The rows of the picture that it covers.
-    pub rows: Range<usize>,
+    /// The pixels of the picture that it covers.
+    pub place: Tile,
     /// Receives the colours of its pixels.
     pub canvas: &'a mut dyn Canvas<R>,
     /// Which of its pixels are traced.
@@ -89,14 +86,10 @@ impl<R: SimdReal> WithSimd<R> for Band<'_, R> {
 impl<R: SimdReal> Band<'_, R> {
     #[inline(always)]
     fn trace<L: SimdFloat<Real = R>, const TREE: bool>(mut self, token: L::Token) -> Option<Rays> {
-        let band = Tile {
-            columns: self.columns.clone(),
-            rows: self.rows.clone(),
-        };
-        if !band.is_in(self.region) {
+        if !self.place.is_in(self.region) {
             return Some(Rays::default());
         }
-        let (plan, stop) = (self.plan, &self.control.stop);
+        let (plan, control) = (self.plan, self.control);
         let reused = self.workspace_pool.take::<BandScratch<L>>();
         let mut scratch = reused.unwrap_or_else(|| Box::new(BandScratch::new(self.in_squares)));
         let BandScratch {
@@ -106,19 +99,19 @@ impl<R: SimdReal> Band<'_, R> {
             in_band,
             in_tile,
         } = &mut *scratch;
-        let retracing = (stop, self.retracer);
+        let retracing = (control, self.retracer);
         let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, retracing);
-        in_band.keep_seen(self.candidates, plan, &self.rows, Span::Rows);
-        for left in self.columns.clone().step_by(self.tile) {
+        in_band.keep_seen(self.candidates, plan, &self.place.rows, |seen| seen.rows);
+        for left in self.place.columns.clone().step_by(self.tile) {
             let tile = Tile {
-                columns: left..(left + self.tile).min(self.columns.end),
-                rows: self.rows.clone(),
+                columns: left..(left + self.tile).min(self.place.columns.end),
+                rows: self.place.rows.clone(),
             };
             if !tile.is_in(self.region) {
                 continue;
             }
             let before = engine.rays.total();
-            in_tile.keep_seen(in_band, plan, &tile.columns, Span::Columns);
+            in_tile.keep_seen(in_band, plan, &tile.columns, |seen| seen.columns);
             if plan.screen.is_some() {
                 in_tile.drop_unseen_planes(self.plan, &tile);
             }
@@ -165,8 +158,7 @@ impl<R: SimdReal> Band<'_, R> {
                 self.canvas.scatter(&tile, self.grid, channels);
                 self.grid.pixels(&tile).count()
             };
-            let pixels = &self.control.pixels;
-            pixels.fetch_add(traced as u64, Ordering::Relaxed);
+            control.pixels.fetch_add(traced as u64, Ordering::Relaxed);
             if plan.show == Show::Cost {
                 self.fill_with_heat(&tile, engine.rays.total() - before);
             }

@@ -209,6 +209,7 @@ pub fn beam_around<L: SimdFloat>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::primitive::{PackedSphere, Primitives};
     use proptest::prelude::*;
 
     fn vector(scale: f64) -> impl Strategy<Value = DVec3> {
@@ -221,7 +222,16 @@ mod tests {
     }
 
     fn is_met(beam: Option<Beam<f64>>, ball: Ball) -> bool {
-        beam.is_none_or(|beam| beam.meets::<f64>((), &Balls::new([ball].iter()), 0) != 0)
+        let sphere = PackedSphere {
+            center: Vec3::from_dvec3(ball.center),
+            radius: ball.radius,
+            material: 0,
+        };
+        let balls = Balls::around(&Primitives {
+            spheres: vec![sphere],
+            ..Primitives::default()
+        });
+        beam.is_none_or(|beam| beam.meets::<f64>((), &balls, 0) != 0)
     }
 
     proptest! {

@@ -9,7 +9,7 @@ use super::thresholds::PIXEL_STEPS;
 use super::tile::Tile;
 
 /// For the pixels of a tile and those around it, the sides from which they need no more messages.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct PixelSides {
     /// For each pixel, the bits of the sides from which nothing more is to be learnt; row by row, with a margin of
     /// the pixels around the tile.
@@ -29,24 +29,7 @@ pub struct Side {
     pub notified_pixels: [Option<(usize, u8)>; 2],
 }
 
-/// A pixel adjacent to a side.
-pub enum AdjacentPixel {
-    /// A pixel of the tile, as a cell with signatures only, see [`Cell::signatures_only`].
-    InTile(Cell),
-    /// A pixel of another tile, by its row and column in the picture.
-    InOtherTile([usize; 2]),
-}
-
 impl PixelSides {
-    /// Creates a set without pixels.
-    pub fn new() -> Self {
-        Self {
-            known: Vec::new(),
-            stride: 0,
-            first: [0; 2],
-        }
-    }
-
     /// Loads what the pixels of a tile know. Of the pixels around it nothing is loaded, though they may know
     /// something.
     pub fn start(&mut self, tile: &Tile, messages: &EdgeMessages) {
@@ -133,16 +116,6 @@ impl PixelSides {
         })
     }
 
-    /// Returns the pixel at an index; `None` if it is above or left of the picture.
-    pub fn adjacent_pixel(&self, index: usize) -> Option<AdjacentPixel> {
-        let pixel = self.pixel(index)?;
-        Some(if self.is_inside(index) {
-            AdjacentPixel::InTile(self.cell_of(pixel))
-        } else {
-            AdjacentPixel::InOtherTile(pixel)
-        })
-    }
-
     /// Returns a pixel of the tile, by its row and column in the picture, as a cell with signatures only, see
     /// [`Cell::signatures_only`].
     pub fn cell_of(&self, [row, column]: [usize; 2]) -> Cell {
@@ -150,14 +123,17 @@ impl PixelSides {
         Cell::pixel(column - left, row - top, false).signatures_only()
     }
 
-    fn pixel(&self, index: usize) -> Option<[usize; 2]> {
+    /// Returns the row and the column in the picture of the pixel at an index, which must be in the picture.
+    pub fn pixel(&self, index: usize) -> [usize; 2] {
         let [top, left] = self.first;
-        let row = (top + index / self.stride).checked_sub(1)?;
-        let column = (left + index % self.stride).checked_sub(1)?;
-        Some([row, column])
+        [
+            top + index / self.stride - 1,
+            left + index % self.stride - 1,
+        ]
     }
 
-    fn is_inside(&self, index: usize) -> bool {
+    /// Returns whether the pixel at an index is in the tile.
+    pub fn is_inside(&self, index: usize) -> bool {
         let (row, column) = (index / self.stride, index % self.stride);
         let rows = self.known.len() / self.stride;
         0 < row && row + 1 < rows && 0 < column && column + 1 < self.stride
@@ -183,14 +159,14 @@ mod tests {
         };
         let messages = EdgeMessages::new(7, 0..4);
         messages.known_sides(0, &(6..7))[0].store(ALL, Ordering::Relaxed);
-        let mut borders = PixelSides::new();
+        let mut borders = PixelSides::default();
         borders.start(&tile, &messages);
         let notified_pixels = |borders: &PixelSides, point: [u16; 2]| {
             let side = borders.side_of(point)?;
             let pixels = side.notified_pixels.into_iter().flatten();
             Some(
                 pixels
-                    .filter_map(|(index, side)| Some((borders.pixel(index)?, side)))
+                    .map(|(index, side)| (borders.pixel(index), side))
                     .collect(),
             )
         };
@@ -215,8 +191,8 @@ mod tests {
             .side_of([0, 1])
             .and_then(|side| side.notified_pixels[0])
             .expect("one");
-        let left = borders.adjacent_pixel(left);
-        assert!(matches!(left, Some(AdjacentPixel::InOtherTile([0, 3]))));
+        assert!(!borders.is_inside(left));
+        assert_eq!(borders.pixel(left), [0, 3]);
         assert_eq!(notified_pixels(&borders, [3 * step, 1]), None);
         assert_eq!(
             notified_pixels(&borders, [1, 0]),

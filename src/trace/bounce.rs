@@ -7,7 +7,7 @@ use super::entry_points::EntryPoints;
 use super::mixed_materials::MixedMaterials;
 use super::order::Order;
 use super::outcome::{clamped, join_signatures, signatures_of, store};
-use super::packet::{EdgeInfo, Packet, ReflectionParent, list_doubtful};
+use super::packet::{EdgeInfo, Packet, ReflectionParent};
 use super::samples::{EdgeDetail, Traced};
 use crate::plan::Plan;
 use crate::simd::{MAX_LANES, Mask as _, SimdFloat, Vec3};
@@ -138,10 +138,22 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Lists which of the first `count` samples are in doubt.
+    /// Lists which of the first `count` samples are in doubt. The list is empty if no doubts are noted.
     pub fn list_doubtful(&self, count: usize, indices: &mut Vec<u32>) {
-        let notes = (&self.packets[..], &self.uncertainties[..]);
-        list_doubtful(notes, &self.order.samples, count, indices);
+        indices.clear();
+        let notes = self.packets.iter().zip(&self.uncertainties);
+        for (index, (packet, uncertainty)) in notes.enumerate() {
+            let first = index * L::WIDTH;
+            let mut remaining = uncertainty.doubt.bits() & packet.active.bits();
+            while remaining != 0 {
+                let ray = first + remaining.trailing_zeros() as usize;
+                let sample = self.order.samples.get(ray);
+                indices.push(sample.map_or(ray as u32, |&sample| sample));
+                remaining &= remaining - 1;
+            }
+        }
+        indices.retain(|&index| (index as usize) < count);
+        indices.sort_unstable();
     }
 
     /// Writes the results, sample by sample; `unsorted` is scratch memory, used if the rays were reordered.

@@ -30,24 +30,6 @@ pub struct Targets<'a, R> {
     pub culled_faces: &'a [Option<Arc<CulledFaces>>],
 }
 
-/// Direction of a range of pixels.
-#[derive(Clone, Copy, Debug)]
-pub enum Span {
-    /// From left to right.
-    Columns,
-    /// From top to bottom.
-    Rows,
-}
-
-/// What is left out of a list of primitives.
-#[derive(Clone, Copy, Debug)]
-pub enum Omit<'a> {
-    /// Nothing.
-    Nothing,
-    /// The markers of lights, and the triangles whose flag is set.
-    MarkersAndFaces(&'a [bool]),
-}
-
 impl Candidates {
     /// Everything, markers included.
     pub fn all<R: Real>(plan: &Plan<R>) -> Self {
@@ -63,8 +45,7 @@ impl Candidates {
     /// Everything that camera rays may hit.
     pub fn all_seen<R: Real>(plan: &Plan<R>) -> Self {
         let mut all = Self::all(plan);
-        all.lists[Kind::Triangle as usize]
-            .retain(|&index| !is_set(&plan.camera_culled_faces, index));
+        all.leave_out_faces(&plan.camera_culled_faces);
         all.leave_out(plan, &plan.edge_on);
         all
     }
@@ -93,6 +74,18 @@ impl Candidates {
         for (list, first) in self.lists.iter_mut().zip(plan.primitives.firsts()) {
             list.retain(|&index| !numbers.contains(&(first + index as usize)));
         }
+    }
+
+    /// Removes the triangles whose flag is set.
+    pub fn leave_out_faces(&mut self, flags: &[bool]) {
+        let is_set = |index: u32| flags.get(index as usize) == Some(&true);
+        self.lists[Kind::Triangle as usize].retain(|&index| !is_set(index));
+    }
+
+    /// Removes the markers of lights, which are the first spheres.
+    pub fn leave_out_markers<R: Real>(&mut self, plan: &Plan<R>) {
+        let is_marker = |index: u32| (index as usize) < plan.markers;
+        self.lists[Kind::Sphere as usize].retain(|&index| !is_marker(index));
     }
 
     /// The indices of one kind.
@@ -134,24 +127,19 @@ impl Candidates {
         (round + loose.take(2).count()).min(2)
     }
 
-    /// Becomes the candidates of `from` that can be seen in these columns (or rows) of pixels.
+    /// Becomes the candidates of `from` that can be seen in these rows or columns of pixels, whichever `extent` takes
+    /// of a rectangle on the screen.
     pub fn keep_seen<R: Real>(
         &mut self,
         from: &Self,
         plan: &Plan<R>,
         pixels: &Range<usize>,
-        span: Span,
+        extent: fn(&Rectangle) -> Extent,
     ) {
         let Some(screen) = &plan.screen else {
             return self.clone_from(from);
         };
-        let meets = |rectangle: &Rectangle| {
-            let extent: Extent = match span {
-                Span::Columns => rectangle.columns,
-                Span::Rows => rectangle.rows,
-            };
-            extent.meets(pixels.start, pixels.end)
-        };
+        let meets = |rectangle: &Rectangle| extent(rectangle).meets(pixels);
         for ((list, from), rectangles) in self.lists.iter_mut().zip(&from.lists).zip(screen) {
             list.clear();
             // Endless primitives have no rectangles.
@@ -188,25 +176,12 @@ impl Candidates {
         });
     }
 
-    /// Becomes the primitives in these balls of the plan, sorted by kind and without those to omit; no geometry.
-    pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, balls: &[u32], omit: Omit) {
+    /// Becomes the primitives in these balls of the plan, sorted by kind; no geometry.
+    pub fn sort_by_kind<R: Real>(&mut self, plan: &Plan<R>, balls: &[u32]) {
         self.clear();
-        let firsts = plan.primitives.firsts();
         for &ball in balls {
-            let number = plan.ball_numbers[ball as usize];
-            let started_kinds = firsts.iter().filter(|&&first| first <= number as usize);
-            let kind = started_kinds.count() - 1;
-            let index = number - firsts[kind] as u32;
-            let is_omitted = match omit {
-                Omit::Nothing => false,
-                Omit::MarkersAndFaces(faces) => {
-                    (kind == Kind::Sphere as usize && (index as usize) < plan.markers)
-                        || (kind == Kind::Triangle as usize && is_set(faces, index))
-                }
-            };
-            if !is_omitted {
-                self.lists[kind].push(index);
-            }
+            let (kind, index) = plan.balls.primitives[ball as usize];
+            self.lists[kind as usize].push(index);
         }
     }
 }
@@ -228,8 +203,4 @@ impl<R: Real, W: Fn(Vec3<R>, R) -> R> Visit<R> for NarrowFilter<'_, W> {
         list.clear();
         list.extend(narrow);
     }
-}
-
-fn is_set(flags: &[bool], index: u32) -> bool {
-    flags.get(index as usize) == Some(&true)
 }

@@ -4,7 +4,6 @@
 use std::ops::Range;
 
 use super::tile::{Grid, Pixel, Tile};
-use crate::plan::Region;
 use crate::simd::{Level, SimdFloat, SimdReal, WithSimd};
 
 /// Receives the colours of the pixels of a part of the picture.
@@ -23,22 +22,16 @@ pub trait Canvas<R> {
 #[derive(Debug)]
 pub struct Pixels<'a, P> {
     /// The part of the picture.
-    pub place: Region,
+    pub place: Tile,
     /// The rows of its pixels.
     pub rows: Vec<&'a mut [P]>,
     /// Instruction set with which colours are converted to pixels.
     pub level: Level,
 }
 
-impl<P> Pixels<'_, P> {
-    fn pixel(&mut self, column: usize, row: usize) -> &mut P {
-        &mut self.rows[row - self.place.rows.0][column - self.place.columns.0]
-    }
-}
-
 impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     fn fill(&mut self, tile: &Tile, stride: usize, channels: [&[R]; 3]) {
-        let [left, top] = [self.place.columns.0, self.place.rows.0];
+        let [left, top] = [self.place.columns.start, self.place.rows.start];
         self.level.run(FillRows {
             rows: &mut self.rows[tile.rows.start - top..tile.rows.end - top],
             columns: tile.columns.start - left..tile.columns.end - left,
@@ -54,7 +47,8 @@ impl<R: SimdReal, P: Pixel> Canvas<R> for Pixels<'_, P> {
     }
 
     fn set(&mut self, column: usize, row: usize, [red, green, blue]: [R; 3]) {
-        *self.pixel(column, row) = P::of(red, green, blue);
+        let [left, top] = [self.place.columns.start, self.place.rows.start];
+        self.rows[row - top][column - left] = P::of(red, green, blue);
     }
 }
 

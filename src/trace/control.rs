@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug, Default)]
 pub struct RenderControl {
     /// Whether the trace shall stop, within a part of a tile.
-    pub(super) stop: AtomicBool,
+    stop: AtomicBool,
     /// Pixels traced so far.
     pub pixels: AtomicU64,
     /// Whether the trace shall pause: every thread checks it before every piece.

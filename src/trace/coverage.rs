@@ -305,7 +305,7 @@ mod tests {
             return None;
         };
         let limits = Limits::new(contrast, depth);
-        let (mut lattice, mut samples) = (Lattice::new(), Samples::default());
+        let (mut lattice, mut samples) = (Lattice::default(), Samples::default());
         for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
             samples.push(x, y);
         }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::beam::Beam;
 use super::bundle::Shaft;
-use super::candidates::{Candidates, Omit};
+use super::candidates::Candidates;
 use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
 use super::thin_cull::may_pass_thin;
@@ -14,24 +14,15 @@ use super::thresholds::THIN_WIDTH;
 use super::tile::Tile;
 use super::walk::Stack;
 use crate::plan::{Plan, PointLight, RayOrigin};
-use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive, Visit};
+use crate::primitive::{Ball, BoundingBox, FAR_CAUTION, Kind, Primitive as _};
 use crate::simd::{Real, SimdFloat};
 
 /// Scratch memory for gathering candidates, reused for every beam.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Scratch<R> {
     /// Boxes of a tree that are still to be visited.
     pub stack: Stack<R>,
     met: Vec<u32>,
-}
-
-impl<R> Default for Scratch<R> {
-    fn default() -> Self {
-        Self {
-            stack: Stack::new(),
-            met: Vec::new(),
-        }
-    }
 }
 
 /// What can block a light on the way to the hits of a tile.
@@ -58,6 +49,13 @@ impl Candidates {
                 self.keep_narrow(from, plan, |_, _| thin_width);
             }
         }
+    }
+
+    /// Returns whether one of the spheres alone hides all of `ball` from a light.
+    fn hold_umbra<R: Real>(&self, plan: &Plan<R>, light: DVec3, ball: &Ball) -> bool {
+        let spheres = self.of(Kind::Sphere).iter();
+        let mut spheres = spheres.map(|&index| &plan.primitives.spheres[index as usize]);
+        spheres.any(|sphere| sphere.ball().is_some_and(|own| own.hides(light, ball)))
     }
 
     /// Removes the planes that the rays of a tile pass by or leave behind.
@@ -96,7 +94,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     ) {
         let plan = self.plan;
         beam.gather::<L>(self.token, (&plan.balls, 0), &mut scratch.met);
-        candidates.sort_by_kind(plan, &scratch.met, Omit::Nothing);
+        candidates.sort_by_kind(plan, &scratch.met);
         candidates.has_geometry = plan.geometry.is_some();
         for (index, plane) in plan.primitives.planes.iter().enumerate() {
             if start_plane != Some(index) && beam.crosses(plane.normal, plane.offset) {
@@ -134,8 +132,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         // The first balls are those of the markers.
         beam.gather::<L>(self.token, (&plan.balls, plan.markers), &mut scratch.met);
-        let omit = Omit::MarkersAndFaces(&light.shadow_culled_faces);
-        casters.sort_by_kind(plan, &scratch.met, omit);
+        casters.sort_by_kind(plan, &scratch.met);
+        casters.leave_out_markers(plan);
+        casters.leave_out_faces(&light.shadow_culled_faces);
         casters.has_geometry = plan.geometry.is_some();
         if plan.planes_cast {
             let planes = 0..plan.primitives.planes.len() as u32;
@@ -143,14 +142,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         }
         casters.leave_out(plan, &light.holders);
         thin.keep_thin(casters, plan, footprint);
-        let mut umbra = UmbraSearch {
-            casters,
-            light: from,
-            ball,
-            is_found: false,
-        };
-        plan.primitives.visit(&mut umbra);
-        *is_umbra = umbra.is_found;
+        *is_umbra = casters.hold_umbra(plan, from, ball);
     }
 }
 
@@ -201,21 +193,5 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             candidates.thin.has_geometry =
                 may_pass_thin::<L>(self.token, geometry, &shaft, &margin);
         }
-    }
-}
-
-/// Looks for a caster that alone hides a ball from a light.
-struct UmbraSearch<'a> {
-    casters: &'a Candidates,
-    light: DVec3,
-    ball: &'a Ball,
-    is_found: bool,
-}
-
-impl<R: Real> Visit<R> for UmbraSearch<'_> {
-    fn visit<P: Primitive<R>>(&mut self, kind: Kind, primitives: &[P], _first: usize) {
-        let mut casters = self.casters.of(kind).iter();
-        self.is_found = self.is_found
-            || casters.any(|&index| primitives[index as usize].hides(self.light, self.ball));
     }
 }

@@ -1,10 +1,9 @@
 //! Traces the rays of a tile bounce by bounce: first what all of them hit; then, knowing where that is, the light
 //! that falls on it; then the rays that mirrors send on, as the next bounce.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::bounce::Bounce;
 use super::candidates::Candidates;
+use super::control::RenderControl;
 use super::cull::Scratch;
 use super::faces::note_faces;
 use super::intersect::Kernel;
@@ -39,7 +38,7 @@ pub trait Retracer: Sync {
         &self,
         samples: &mut Samples<f64>,
         edges: EdgeDetail,
-        stop: &AtomicBool,
+        control: &RenderControl,
         traced: &mut Traced<f64>,
     );
 }
@@ -59,25 +58,25 @@ impl<L: SimdFloat> Default for Workspace<L> {
 pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     kernel: Kernel<'a, L, TREE>,
     work: &'a mut Workspace<L>,
-    /// Set once the picture is no longer wanted; also checked within a tile, whose rays can take minutes.
-    stop: &'a AtomicBool,
+    /// Says once the picture is no longer wanted; also asked within a tile, whose rays can take minutes.
+    control: &'a RenderControl,
     retracer: Option<&'a dyn Retracer>,
     /// Number of rays traced so far.
     pub rays: Rays,
 }
 
 impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
-    /// Creates an engine for a plan. It does nothing more once `stop` is set; `retracer`, if given, retraces
+    /// Creates an engine for a plan. It does nothing more once `control` is stopped; `retracer`, if given, retraces
     /// doubtful samples.
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
-        (stop, retracer): (&'a AtomicBool, Option<&'a dyn Retracer>),
+        (control, retracer): (&'a RenderControl, Option<&'a dyn Retracer>),
     ) -> Self {
         Self {
             kernel,
             work,
-            stop,
+            control,
             retracer,
             rays: Rays::default(),
         }
@@ -90,7 +89,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
 
     /// Returns whether the trace was stopped.
     pub fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.control.is_stopped()
     }
 
     /// Traces the samples, whose rays can meet what is in `candidates`. Once the engine is stopped, the results are
@@ -149,10 +148,10 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
         retracer.trace(
             &mut retraced.samples,
             edges,
-            self.stop,
+            self.control,
             &mut retraced.traced,
         );
-        traced.replace(&retraced.indices, &retraced.traced, edges);
+        traced.replace(&retraced.indices, &retraced.traced);
         self.rays.again += retraced.indices.len() as u64;
     }
 
@@ -198,7 +197,7 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
                 let counted = (&mut self.work.scratch.stack, &mut self.rays);
                 bounce.shade(kernel, may_mirror, next, counted);
             }
-            if next.is_empty() || self.stop.load(Ordering::Relaxed) {
+            if next.is_empty() || self.control.is_stopped() {
                 break;
             }
             next.find_candidates(kernel, &mut self.work.scratch);

@@ -48,7 +48,7 @@ impl EntryPoints {
         reach: L::Real,
     ) -> bool {
         self.meshes.clear();
-        let Some(mut objects) = entry_node::<L>(token, &geometry.bvh, shaft, reach) else {
+        let Some(objects) = entry_node::<L>(token, &geometry.bvh, shaft, reach) else {
             return false;
         };
         let mut kept = Node::empty();
@@ -66,9 +66,8 @@ impl EntryPoints {
             }
             kept.take(&objects, index);
         }
-        std::mem::swap(&mut objects, &mut kept);
-        self.objects = Some(objects);
-        objects.count > 0
+        self.objects = Some(kept);
+        kept.count > 0
     }
 
     /// The entry point into the tree of objects.

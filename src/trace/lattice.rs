@@ -43,7 +43,7 @@ impl<R: Real> CornerSample<R> {
 }
 
 /// Samples on the finest grid of a tile, shared by the cells around them.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Lattice<R> {
     /// The points that have a sample or for which one was requested.
     points: PointTable,
@@ -136,15 +136,6 @@ impl<R: Real> Limits<R> {
 }
 
 impl<R: Real> Lattice<R> {
-    /// Creates a lattice without samples.
-    pub fn new() -> Self {
-        Self {
-            points: PointTable::new(),
-            samples: Vec::new(),
-            faces: Vec::new(),
-        }
-    }
-
     /// Removes the samples of the previous tile.
     pub fn clear(&mut self) {
         self.points.clear();
@@ -428,7 +419,7 @@ mod tests {
             columns: 0..1,
             rows: 0..1,
         };
-        let (mut lattice, mut pixel) = (Lattice::new(), [Cell::pixel(0, 0, false)]);
+        let (mut lattice, mut pixel) = (Lattice::default(), [Cell::pixel(0, 0, false)]);
         lattice.add(&tile, &traced(&corners), &mut pixel);
         let [pixel] = pixel;
         let at = lattice.request_middle(&pixel);

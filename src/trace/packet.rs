@@ -1,11 +1,10 @@
 //! Packets of rays, and what is noted of them.
 
-use super::doubt::Uncertainty;
 use super::footprint::RayCone;
 use super::intersect::{Kernel, Nearest};
 use super::paths::{IgnoredPrimitive, NO_PRIMITIVE};
 use crate::primitive::Ray;
-use crate::simd::{Mask as _, Real, SimdFloat, Vec3};
+use crate::simd::{Real, SimdFloat, Vec3};
 
 /// Rays that are traced in step, what they hit and the colours that they bring back.
 #[derive(Clone, Copy)]
@@ -74,26 +73,4 @@ impl<L: SimdFloat> EdgeInfo<L> {
             mirrored_shadows: cone.width.like(L::Real::ZERO),
         }
     }
-}
-
-/// Lists which of the first `count` samples are in doubt. `order` gives the sample of each ray, and is empty if the
-/// rays are in the order of the samples. The list is empty if no doubts are noted.
-pub fn list_doubtful<L: SimdFloat>(
-    (packets, uncertainties): (&[Packet<L>], &[Uncertainty<L>]),
-    order: &[u32],
-    count: usize,
-    indices: &mut Vec<u32>,
-) {
-    indices.clear();
-    for (index, (packet, uncertainty)) in packets.iter().zip(uncertainties).enumerate() {
-        let first = index * L::WIDTH;
-        let mut remaining = uncertainty.doubt.bits() & packet.active.bits();
-        while remaining != 0 {
-            let ray = first + remaining.trailing_zeros() as usize;
-            indices.push(order.get(ray).map_or(ray as u32, |&sample| sample));
-            remaining &= remaining - 1;
-        }
-    }
-    indices.retain(|&index| (index as usize) < count);
-    indices.sort_unstable();
 }

@@ -14,15 +14,16 @@ pub struct PointTable {
     slots: Vec<u64>,
 }
 
-impl PointTable {
-    /// Creates an empty table.
-    pub fn new() -> Self {
+impl Default for PointTable {
+    fn default() -> Self {
         Self {
             points: Vec::new(),
             slots: vec![0; LEAST_SLOTS as usize],
         }
     }
+}
 
+impl PointTable {
     /// Removes all points.
     pub fn clear(&mut self) {
         self.points.clear();
@@ -89,7 +90,7 @@ mod tests {
 
     #[test]
     fn a_point_has_one_number() {
-        let mut points = PointTable::new();
+        let mut points = PointTable::default();
         for _ in 0..2 {
             for (x, y) in (0..70).flat_map(|y| (0..90).map(move |x| (x * 32, y * 32))) {
                 let number = u32::from(y / 32 * 90 + x / 32);

@@ -1,7 +1,7 @@
 //! The cells of a tile whose insides are examined. They are handled one by one, not in lanes: the code is compiled
 //! once for each precision, not for every vector width.
 
-use super::borders::{AdjacentPixel, PixelSides};
+use super::borders::PixelSides;
 use super::cell::Cell;
 use super::coverage::{CellFinding, CrossedCell};
 use super::lattice::{Inside, Lattice, Limits};
@@ -20,7 +20,7 @@ const MIN_ALIKE_PARTS: u8 = 4;
 /// The cells of a tile whose inside is not known. If one edge crosses a cell according to its corners,
 /// [`CrossedCell`] takes a third of the samples that quarters would; if a cell shows one thing whose colour changes
 /// evenly, [`Lattice::accumulate_even`] takes one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Refinement<R> {
     lattice: Lattice<R>,
     cells: Vec<Cell>,
@@ -44,23 +44,6 @@ pub struct Refinement<R> {
 }
 
 impl<R: Real> Refinement<R> {
-    /// Creates a refinement without cells.
-    pub fn new() -> Self {
-        Self {
-            lattice: Lattice::new(),
-            cells: Vec::new(),
-            to_divide: Vec::new(),
-            crossed: Vec::new(),
-            even: Vec::new(),
-            borders: PixelSides::new(),
-            checked: 0,
-            notified_pixels: Vec::new(),
-            notified: Vec::new(),
-            part_counts: Vec::new(),
-            crowded: Vec::new(),
-        }
-    }
-
     /// Removes the cells of the previous tile.
     pub fn clear(&mut self) {
         self.to_divide.clear();
@@ -126,11 +109,16 @@ impl<R: Real> Refinement<R> {
         self.borders.start(tile, messages);
         self.checked = 0;
         for pixel in pixels {
-            let pixel = self.borders.cell_of(*pixel);
-            self.borders.note(&pixel, ALL);
-            self.notified_pixels.push(pixel);
+            self.notify(*pixel);
         }
         self.divide_notified(tile, corners, colors);
+    }
+
+    /// Notes that a pixel of the tile, by its row and column in the picture, has received a message.
+    fn notify(&mut self, pixel: [usize; 2]) {
+        let pixel = self.borders.cell_of(pixel);
+        self.borders.note(&pixel, ALL);
+        self.notified_pixels.push(pixel);
     }
 
     /// Divides the pixels that are near something thin; the quarters of the others need not be searched for it.
@@ -265,14 +253,12 @@ impl<R: Real> Refinement<R> {
                 continue;
             };
             if R::from_f64(MAX_EXCESS) < self.lattice.excess(index, side.ends) {
-                for (pixel_index, side) in side.notified_pixels.into_iter().flatten() {
-                    match self.borders.adjacent_pixel(pixel_index) {
-                        Some(AdjacentPixel::InTile(pixel)) => {
-                            self.borders.note(&pixel, ALL);
-                            self.notified_pixels.push(pixel);
-                        }
-                        Some(AdjacentPixel::InOtherTile(pixel)) => messages.send(pixel, side),
-                        None => {}
+                for (index, side) in side.notified_pixels.into_iter().flatten() {
+                    let pixel = self.borders.pixel(index);
+                    if self.borders.is_inside(index) {
+                        self.notify(pixel);
+                    } else {
+                        messages.send(pixel, side);
                     }
                 }
             }

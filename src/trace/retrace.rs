@@ -1,8 +1,7 @@
 //! Retracing of samples in double precision.
 
-use std::sync::atomic::AtomicBool;
-
 use super::candidates::Candidates;
+use super::control::RenderControl;
 use super::engine::{Engine, Retracer, Workspace};
 use super::intersect::Kernel;
 use super::samples::{EdgeDetail, Samples, Traced};
@@ -37,14 +36,14 @@ impl Retracer for DoublePrecision {
         &self,
         samples: &mut Samples<f64>,
         edges: EdgeDetail,
-        stop: &AtomicBool,
+        control: &RenderControl,
         traced: &mut Traced<f64>,
     ) {
         self.level.run(Retrace {
             retracer: self,
             samples,
             edges,
-            stop,
+            control,
             traced,
         });
     }
@@ -55,7 +54,7 @@ struct Retrace<'a> {
     retracer: &'a DoublePrecision,
     samples: &'a mut Samples<f64>,
     edges: EdgeDetail,
-    stop: &'a AtomicBool,
+    control: &'a RenderControl,
     traced: &'a mut Traced<f64>,
 }
 
@@ -73,7 +72,7 @@ impl WithSimd<f64> for Retrace<'_> {
         let mut work = workspace_pool.take::<Workspace<L>>().unwrap_or_default();
         self.samples.pad(L::WIDTH);
         let kernel = Kernel { token, plan };
-        let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.stop, None));
+        let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.control, None));
         engine.trace(self.samples, candidates, self.edges, self.traced);
         workspace_pool.put(work);
     }

@@ -56,7 +56,7 @@ impl<L: SimdFloat> Sampler<L> {
             samples: Samples::default(),
             traced: Traced::default(),
             corners: Traced::default(),
-            refinement: Refinement::new(),
+            refinement: Refinement::default(),
         }
     }
 

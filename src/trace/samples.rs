@@ -70,6 +70,13 @@ fn sort<T: Copy + Default>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
     }
 }
 
+/// Replaces the results at `indices`; nothing if there are no new ones.
+fn replace<T: Copy, U>(old: &mut [U], new: &[T], indices: &[u32], convert: impl Fn(T) -> U) {
+    for (&index, &new) in indices.iter().zip(new) {
+        old[index as usize] = convert(new);
+    }
+}
+
 impl<R: Real> Samples<R> {
     /// Removes all places.
     pub fn clear(&mut self) {
@@ -165,31 +172,20 @@ impl<R: Real> Traced<R> {
         [&self.red, &self.green, &self.blue]
     }
 
-    /// Replaces the results of the samples at `indices` by those in double precision.
-    pub fn replace(&mut self, indices: &[u32], retraced: &Traced<f64>, edges: EdgeDetail) {
+    /// Replaces the results of the samples at `indices` by those in double precision; both know the same of edges.
+    pub fn replace(&mut self, indices: &[u32], retraced: &Traced<f64>) {
         let columns = [
             (&mut self.red, &retraced.red),
             (&mut self.green, &retraced.green),
             (&mut self.blue, &retraced.blue),
             (&mut self.thin_distance, &retraced.thin_distance),
         ];
-        let column_count = if edges == EdgeDetail::Ignored { 3 } else { 4 };
-        for (to, from) in columns.into_iter().take(column_count) {
-            for (&index, &number) in indices.iter().zip(from) {
-                to[index as usize] = R::from_f64(number);
-            }
+        for (to, from) in columns {
+            replace(to, from, indices, R::from_f64);
         }
-        if edges != EdgeDetail::Ignored {
-            for (&index, &signature) in indices.iter().zip(&retraced.signature) {
-                self.signature[index as usize] = signature;
-            }
-            for (&index, &shadows) in indices.iter().zip(&retraced.shadows) {
-                self.shadows[index as usize] = shadows;
-            }
-            for (&index, &face) in indices.iter().zip(&retraced.faces) {
-                self.faces[index as usize] = face;
-            }
-        }
+        replace(&mut self.signature, &retraced.signature, indices, |new| new);
+        replace(&mut self.shadows, &retraced.shadows, indices, |new| new);
+        replace(&mut self.faces, &retraced.faces, indices, |new| new);
     }
 
     /// Makes these samples white, and darkens all others.

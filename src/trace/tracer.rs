@@ -11,12 +11,11 @@ use super::band::Band;
 use super::candidates::Candidates;
 use super::canvas::Pixels;
 use super::control::RenderControl;
-use super::engine::Retracer;
 use super::messages::{BandMessages, EdgeMessages};
 use super::retrace::DoublePrecision;
 use super::stats::Rays;
 use super::threads::Threads;
-use super::tile::{Grid, Pass, Pixel};
+use super::tile::{Grid, Pass, Pixel, Tile};
 use super::workspace_pool::WorkspacePool;
 use crate::plan::{Plan, Planner, Region, RenderRequest, Show, is_double, is_filtered};
 use crate::scene::{Aspect, Sampling, Scene};
@@ -214,13 +213,13 @@ impl Tracer {
     }
 
     /// Returns the pieces that the picture is divided into for a number of threads.
-    fn pieces(&self, threads: usize) -> impl Iterator<Item = Region> {
+    fn pieces(&self, threads: usize) -> impl Iterator<Item = Tile> {
         let piece_width = self.piece_width(self.height, threads);
         (0..self.height).step_by(self.tile).flat_map(move |top| {
             let starts = (0..self.width).step_by(piece_width);
-            starts.map(move |left| Region {
-                columns: (left, (left + piece_width).min(self.width)),
-                rows: (top, (top + self.tile).min(self.height)),
+            starts.map(move |left| Tile {
+                columns: left..(left + piece_width).min(self.width),
+                rows: top..(top + self.tile).min(self.height),
             })
         })
     }
@@ -239,10 +238,9 @@ impl Tracer {
         let samples = (Grid::ALL, self.sampling);
         let mut pixels = vec![[0.0_f32; 3]; self.width * self.tile];
         let messages = self.edge_messages(0..self.height, self.sampling);
-        let time = |place: Region| {
-            let width = place.columns.1 - place.columns.0;
-            let height = place.rows.1 - place.rows.0;
-            let rows = pixels.chunks_mut(width).take(height).collect();
+        let time = |place: Tile| {
+            let rows = pixels.chunks_mut(place.width());
+            let rows = rows.take(place.rows.len()).collect();
             let since = Instant::now();
             // Never stopped.
             let control = RenderControl::default();
@@ -257,14 +255,14 @@ impl Tracer {
     fn trace_piece<R: SimdReal, P: Pixel>(
         &self,
         (plan, candidates): (&Plan<R>, &Candidates),
-        (place, pixels): (Region, Vec<&mut [P]>),
+        (place, pixels): (Tile, Vec<&mut [P]>),
         (grid, sampling): (Grid, Sampling),
         (messages, control): (BandMessages, &RenderControl),
     ) -> Option<Rays> {
         // Outside of the kernel, which is left alone; pieces are short compared with any pause.
         control.wait_while_paused();
         let mut canvas = Pixels {
-            place,
+            place: place.clone(),
             rows: pixels,
             level: self.level,
         };
@@ -274,16 +272,12 @@ impl Tracer {
             tile: self.tile,
             in_squares: self.in_squares,
             region: self.region,
-            columns: place.columns.0..place.columns.1,
-            rows: place.rows.0..place.rows.1,
+            place,
             canvas: &mut canvas,
             grid,
             sampling,
             messages,
-            retracer: self
-                .retracer
-                .as_ref()
-                .map(|retracer| retracer as &dyn Retracer),
+            retracer: self.retracer.as_ref().map(|retracer| retracer as _),
             workspace_pool: &self.workspace_pool,
             control,
         })
@@ -311,12 +305,14 @@ impl Tracer {
             .enumerate();
         let trace = |(index, pixels): (usize, &mut [P])| {
             let top = first + index * self.tile;
-            let rows = (top, top + pixels.len() / self.width);
+            let rows = top..top + pixels.len() / self.width;
             let pieces = in_pieces(pixels, (self.width, piece_width)).into_par_iter();
             let pieces = pieces.enumerate().map(|(index, pixels)| {
                 let left = index * piece_width;
-                let columns = (left, (left + piece_width).min(self.width));
-                let place = Region { columns, rows };
+                let place = Tile {
+                    columns: left..(left + piece_width).min(self.width),
+                    rows: rows.clone(),
+                };
                 let context = (BandMessages::all(&messages), control);
                 self.trace_piece(
                     (plan, &candidates),
@@ -366,14 +362,17 @@ impl Tracer {
             .with_max_len(1);
         let trace = |(index, pixels): (usize, &mut [P])| {
             let top = first + index * self.tile;
-            let rows = (top, top + pixels.len() / self.width);
+            let rows = top..top + pixels.len() / self.width;
             let mut rays = Rays::default();
             for (&[_, tile_column], notified) in tiles.range([index, 0]..[index + 1, 0]) {
                 let left = tile_column * self.tile;
-                let columns = (left, (left + self.tile).min(self.width));
+                let place = Tile {
+                    columns: left..(left + self.tile).min(self.width),
+                    rows: rows.clone(),
+                };
                 let part = pixels.chunks_mut(self.width);
-                let part = part.map(|row| &mut row[columns.0..columns.1]).collect();
-                let target = (Region { columns, rows }, part);
+                let part = part.map(|row| &mut row[place.columns.clone()]).collect();
+                let target = (place, part);
                 let messages = BandMessages {
                     messages,
                     only_pixels: Some(notified),

@@ -13,9 +13,7 @@ mod in_doubt;
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::SHARES_PER_UNIT;
-pub use packed::{
-    Culling, PackedTriangle, Tip, Vertex, corner_key, count_corner_users, number_corners,
-};
+pub use packed::{Culling, PackedTriangle, Tip, Vertex};
 use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
@@ -26,6 +24,7 @@ use super::bounding_box::BoundingBox;
 use super::kind::{Approach, Packing, Primitive, SurfacePoint};
 use super::projector::{Projector, Rectangle};
 use super::ray::Ray;
+use crate::mesh::position_key;
 use crate::scene::{Methods, Triangle, TriangleMethod};
 use crate::simd::{Real, SimdFloat, Vec3};
 
@@ -78,22 +77,21 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     type Prepared<L: SimdFloat<Real = R>> = Shear<L>;
 
     fn pack(description: &Triangle, material: u32, packing: &Packing) -> Option<Self> {
-        let Triangle { a, b, c } = *description;
-        let normal = (c - a).cross(b - a).try_normalize()?;
-        let is_shared = |point: &DVec3| packing.corner_users.get(&corner_key(*point)) > Some(&1);
+        let corners = description.corners();
+        let is_shared = |point: &DVec3| packing.corner_users.get(&position_key(*point)) > Some(&1);
+        let is_of_solid = packing.faces_of_solids.contains(&corners.map(position_key));
         Some(Self {
-            corners: [a, b, c].map(|corner| Vec3::from_dvec3(corner - packing.centre)),
-            normal: Vec3::from_dvec3(normal),
-            in_mesh: [a, b, c].iter().any(is_shared),
-            thickness: R::from_f64(description.thickness()),
+            corners: corners.map(|corner| Vec3::from_dvec3(corner - packing.centre)),
+            in_mesh: corners.iter().any(is_shared),
             tip: Tip::Narrow,
-            culling: if packing.faces_of_solids.contains(&[a, b, c].map(corner_key)) {
+            culling: if is_of_solid {
                 Culling::Far
             } else {
                 Culling::Nothing
             },
-            longest: R::from_f64(description.longest_side()),
             material,
+            // Its measures do not depend on where it is.
+            ..Self::of_mesh(corners)?
         })
     }
 

@@ -1,12 +1,8 @@
-//! The triangle in the form that kernels use, and the shared corners of triangles.
-
-use std::collections::HashMap;
+//! The triangle in the form that kernels use.
 
 use glam::DVec3;
 
-use crate::mesh::position_key;
-use crate::primitive::kind::Corner;
-use crate::scene::{Scene, Shape, Triangle};
+use crate::scene::Triangle;
 use crate::simd::{Real, Vec3};
 
 /// How a face of a solid may be left out, since others hide and shade the same.
@@ -127,40 +123,4 @@ impl<R: Real> PackedTriangle<R> {
             tip => tip,
         };
     }
-}
-
-/// Converts a corner to a key: two corners are the same if their coordinates are equal.
-pub fn corner_key(point: DVec3) -> Corner {
-    position_key(point)
-}
-
-/// Numbers the corners of triangles, with the same number where triangles meet: where single precision could not
-/// distinguish points at the largest coordinate. In double precision, too, this ignores gaps that are only noise in
-/// the last digits.
-pub fn number_corners<R: Real>(triangles: &[PackedTriangle<R>]) -> Vec<[u32; 3]> {
-    let all = triangles.iter().flat_map(|triangle| triangle.corners);
-    let farthest = all.map(|corner| corner.to_dvec3().abs().max_element());
-    let step =
-        (farthest.fold(0.0, f64::max) * 2.0 * f64::from(f32::UNIT_ROUNDOFF)).max(f64::MIN_POSITIVE);
-    let mut numbers = HashMap::new();
-    let mut number = |position: Vec3<R>| {
-        let next = numbers.len() as u32;
-        let position = (position.to_dvec3() / step).round();
-        *numbers.entry(corner_key(position)).or_insert(next)
-    };
-    let corners = triangles.iter().map(|triangle| triangle.corners);
-    corners.map(|corners| corners.map(&mut number)).collect()
-}
-
-/// Counts the visible triangles that meet at each corner.
-pub fn count_corner_users(scene: &Scene) -> HashMap<Corner, usize> {
-    let mut users = HashMap::new();
-    for object in scene.visible_objects() {
-        if let Shape::Triangle(triangle) = &object.shape {
-            for point in triangle.corners() {
-                *users.entry(corner_key(point)).or_insert(0) += 1;
-            }
-        }
-    }
-    users
 }

@@ -14,6 +14,13 @@ impl Pixel for [u64; 3] {
     }
 }
 
+/// Traces all of a picture.
+fn picture(tracer: &Tracer) -> (Vec<[u64; 3]>, Option<Rays>) {
+    let mut pixels = vec![[0_u64; 3]; tracer.width() * tracer.height()];
+    let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+    (pixels, rays)
+}
+
 #[test]
 fn tiles_of_any_size_give_the_same_bits() {
     let mut scene = Scene::demo();
@@ -28,8 +35,7 @@ fn tiles_of_any_size_give_the_same_bits() {
                 tile,
                 ..Tracer::new(&scene, &request)
             };
-            let mut pixels = vec![[0_u64; 3]; 171 * 93];
-            let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
+            let (pixels, rays) = picture(&tracer);
             assert!(rays.is_some());
             pixels
         });
@@ -50,19 +56,16 @@ fn many_threads_share_the_tiles_of_a_row() {
         let tracer = Tracer::new(&scene, &request);
         let pictures = [1, 24].map(|threads| {
             let threads = Threads::new(Some(threads)).expect("threads");
-            let mut pixels = vec![[0_u64; 3]; 171 * 93];
-            let control = RenderControl::default();
-            threads.run(|| tracer.pass(&mut pixels, Pass::Whole, &control));
-            pixels
+            threads.run(|| picture(&tracer).0)
         });
         assert!(pictures[0] == pictures[1], "{sampling:?}");
         assert_eq!(tracer.pieces(24).count(), tiles, "every tile");
         let large = Tracer::new(&scene, &RenderRequest::sized(1024, 1024));
         assert_eq!(large.pieces(1).count(), 128, "quarters of rows");
-        assert_eq!(
-            tracer.pieces(24).map(Region::pixels).sum::<usize>(),
-            171 * 93
-        );
+        let pixels = tracer
+            .pieces(24)
+            .map(|piece| piece.width() * piece.rows.len());
+        assert_eq!(pixels.sum::<usize>(), 171 * 93);
         assert_eq!(tracer.time_pieces(24).len(), tiles);
     }
 }
@@ -77,14 +80,11 @@ fn packets_in_squares_give_the_same_bits() {
                 accelerator: Accelerator::Bvh,
                 ..RenderRequest::sized(83, 61)
             };
-            let tracer = Tracer {
+            picture(&Tracer {
                 tile,
                 in_squares,
                 ..Tracer::new(&scene, &request)
-            };
-            let mut pixels = vec![[0_u64; 3]; 83 * 61];
-            let rays = tracer.pass(&mut pixels, Pass::Whole, &RenderControl::default());
-            (pixels, rays)
+            })
         });
         assert!(pictures[0] == pictures[1], "{sampling:?}");
     }
@@ -135,8 +135,7 @@ fn a_picture_in_strips_has_the_same_bits() {
             strip_rows: 3,
             ..Tracer::new(&scene, &request)
         };
-        let mut whole = vec![[0_u64; 3]; 83 * 61];
-        let rays = tracer.pass(&mut whole, Pass::Whole, &control);
+        let (whole, rays) = picture(&tracer);
         let mut strips = Vec::new();
         let mut sum = Rays::default();
         for first in (0..61).step_by(tracer.strip()) {
@@ -149,9 +148,7 @@ fn a_picture_in_strips_has_the_same_bits() {
         assert!(strips == whole, "{sampling:?}");
         assert_eq!(Some(sum), rays);
         if scene.objects.len() == BOXES as usize {
-            let unbroken = Tracer::new(&scene, &request);
-            let mut other = vec![[0_u64; 3]; 83 * 61];
-            unbroken.pass(&mut other, Pass::Whole, &control);
+            let (other, _) = picture(&Tracer::new(&scene, &request));
             matters += usize::from(other != whole);
         }
     }
