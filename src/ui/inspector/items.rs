@@ -5,10 +5,10 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::title::title_field;
-use crate::editor::{Edit, Item, marker_radius};
+use crate::editor::{Edit, Item, ItemKind, marker_radius};
 use crate::scene::{
-    self, ColorPack, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
-    Object, PropertyValue, Scene, Shape, default_intensity,
+    self, ColorPack, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
+    PropertyValue, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
@@ -26,14 +26,37 @@ pub const COLOR_PACK: &str = "color pack";
 /// Label of the row that sets ambient and diffuse colour together.
 pub const BOTH_COLORS: (&str, [&str; 3]) = color_names!("color");
 
-/// Shows a light and its marker. Returns the edit of a field that the user set to the value it already has, if any.
-pub fn light(
+/// Shows the properties of an item; if it is the only one selected, also what cannot be done with several. Returns the
+/// edit of a field that the user set to the value it already has, if any.
+pub fn item(
+    ui: &mut Ui,
+    scene: &Scene,
+    (item, is_alone): (Item, bool),
+    out: &mut UiRequests,
+) -> Option<(Edit, EditedPart)> {
+    match item.kind {
+        ItemKind::Light => light(ui, scene, item.index, out),
+        ItemKind::Object => object(ui, scene, (item.index, is_alone), out),
+        ItemKind::Pack => {
+            let (name, value) = scene.color_packs.get_index(item.index)?;
+            title_field(ui, icons::PACK, item, name, out);
+            let chosen = pack(ui, item.index, value, out);
+            if is_alone {
+                used_by(ui, scene, name, out);
+            }
+            chosen
+        }
+    }
+}
+
+/// Shows a light and its marker.
+fn light(
     ui: &mut Ui,
     scene: &Scene,
     index: usize,
-    before: &Light,
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
+    let before = scene.lights.get(index)?;
     title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
     let mut light = before.clone();
     let mut rows = FieldRows::new(ui);
@@ -147,14 +170,13 @@ fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
 }
 
 /// Shows an object's shape and color pack; if it is the only one selected, also the tools to join and separate it.
-/// Returns the edit of a field that the user set to the value it already has, if any.
-pub fn object(
+fn object(
     ui: &mut Ui,
     scene: &Scene,
     (index, is_alone): (usize, bool),
-    before: &Object,
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
+    let before = scene.objects.get(index)?;
     title_field(
         ui,
         icons::of_shape(&before.shape),
@@ -263,9 +285,8 @@ fn shape_rows(rows: &mut FieldRows, shape: &mut Shape) {
     });
 }
 
-/// Shows the colours of a color pack. Returns the edit of a field that the user set to the value it already has, if
-/// any.
-pub fn pack(
+/// Shows the colours of a color pack.
+fn pack(
     ui: &mut Ui,
     index: usize,
     before: &ColorPack,
@@ -331,7 +352,7 @@ pub fn pack(
 }
 
 /// Lists the users of a color pack; a click selects one.
-pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
+fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = FieldRows::new(ui);
     rows.heading("Used by");
     let mut all = Item::users_of_pack(scene, name);

@@ -7,7 +7,7 @@ use super::alike::{chosen_for_all, for_all, packs_of, values};
 use super::as_one::transform_group;
 use super::items;
 use super::keys;
-use super::title::{list_differing, name_field, title, title_field};
+use super::title::{list_differing, name_field, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
@@ -57,25 +57,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     ui.add_space(GRID);
     let mut requests = UiRequests::default();
-    let index = last.index;
-    let chosen = match last.kind {
-        ItemKind::Object => {
-            let object = scene.objects.get(index);
-            object
-                .and_then(|object| items::object(ui, scene, (index, false), object, &mut requests))
-        }
-        ItemKind::Light => {
-            let light = scene.lights.get(index);
-            light.and_then(|light| items::light(ui, scene, index, light, &mut requests))
-        }
-        ItemKind::Pack => {
-            let pack = scene.color_packs.get_index(index);
-            pack.and_then(|(name, pack)| {
-                title_field(ui, icons::PACK, last, name, &mut requests);
-                items::pack(ui, index, pack, &mut requests)
-            })
-        }
-    };
+    let chosen = items::item(ui, scene, (last, false), &mut requests);
     // Members of a group keep their own positions, rotations and so on; otherwise they would end up in one place.
     let is_shared = |chosen: &(Edit, EditedPart)| {
         let is_pack = matches!(chosen.0, Edit::Pack(..));
