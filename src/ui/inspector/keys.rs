@@ -6,7 +6,7 @@ use egui::{Button, Id, Ui};
 
 use super::camera::camera_rows;
 use super::items::angle;
-use super::title::{list_differing, title};
+use super::title::{differing, list_differing, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyId, Keys, MAX_SECONDS, Orientation, Owners, Scene, Shape,
@@ -48,21 +48,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
         .iter()
         .filter_map(|place| animation.time_and_pace_of(*place));
     let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
-    let different = [
-        (
-            "interpolation",
-            paces
-                .iter()
-                .any(|(interpolation, _)| *interpolation != pace.0),
-        ),
-        ("easing", paces.iter().any(|(_, easing)| *easing != pace.1)),
-    ];
-    list_differing(
-        ui,
-        different
-            .into_iter()
-            .filter_map(|(name, differs)| differs.then_some(name)),
+    let different = differing(
+        &paces,
+        &[
+            ("interpolation", |a, b| a.0 == b.0),
+            ("easing", |a, b| a.1 == b.1),
+        ],
     );
+    list_differing(ui, &different);
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = FieldRows::new(ui);
     rows.number(&time_field(only.is_some()), &mut new_time);
