@@ -131,10 +131,7 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
         (Projection::Perspective, Command::Perspective),
         (Projection::Orthographic, Command::Orthographic),
     ] {
-        let name = format!("{kind:?}");
-        if ticked(ui, projection == kind, &name, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+        ticked(ui, projection == kind, &format!("{kind:?}"), command, out);
     }
     ui.separator();
     entry(ui, "Frame selection", Command::FrameSelected, out);
@@ -194,9 +191,7 @@ fn part_entries(
     out: &mut UiRequests,
 ) {
     for &(part, name) in parts {
-        if ticked(ui, *layout.part(part), name, None).clicked() {
-            out.commands.push(Command::Part(part));
-        }
+        ticked(ui, *layout.part(part), name, Command::Part(part), out);
     }
 }
 
@@ -211,9 +206,7 @@ fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
         (layout.below == Below::Lab, "Lab", Command::Lab),
         (layout.is_alone, "Picture only", Command::PictureAlone),
     ] {
-        if ticked(ui, is_on, name, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+        ticked(ui, is_on, name, command, out);
     }
 }
 
@@ -274,9 +267,7 @@ fn retime_entries(ui: &mut Ui, out: &mut UiRequests) {
 fn theme_choice(ui: &mut Ui, out: &mut UiRequests) {
     let shown = ui.ctx().theme();
     for (theme, name) in [(Theme::Dark, "Dark theme"), (Theme::Light, "Light theme")] {
-        if ticked(ui, shown == theme, name, None).clicked() {
-            out.commands.push(Command::Theme(theme));
-        }
+        ticked(ui, shown == theme, name, Command::Theme(theme), out);
     }
 }
 
@@ -286,9 +277,7 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         (Mode::LowRes, "Low-res (64 pixels)", Command::LowRes),
         (Mode::HighRes, "High-res picture", Command::HighRes),
     ] {
-        if ticked(ui, editor.mode == mode, text, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+        ticked(ui, editor.mode == mode, text, command, out);
     }
 }
 
