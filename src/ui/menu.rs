@@ -283,57 +283,50 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 
 /// Shows the switches from right to left: lights, projection, picture, live view.
 fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let scene = editor.scene();
-    let markers = scene.light_visualization;
-    let hint = "Show light markers (I on, U off)";
-    if bar_switch(
-        ui,
-        markers,
-        (icons::text(icons::LIGHT), "Lights"),
-        "Lights",
-        hint,
-    ) {
-        out.commands.push(if markers {
-            Command::MarkersOff
-        } else {
-            Command::MarkersOn
-        });
-    }
-    let is_perspective = editor.shown().camera.projection == Projection::Perspective;
-    let name = if is_perspective {
-        "Perspective"
-    } else {
-        "Orthographic"
-    };
-    let hint = "Projection (P perspective, O orthographic); click to change";
-    if bar_switch(
-        ui,
-        false,
-        (icons::text(icons::CAMERA), name),
-        "Projection",
-        hint,
-    ) {
-        let other = if is_perspective {
-            Command::Orthographic
-        } else {
-            Command::Perspective
-        };
-        out.commands.push(other);
-    }
+    let markers = editor.scene().light_visualization;
     let is_still = editor.mode == Mode::HighRes;
-    let hint = "Trace the picture at full resolution (H); Esc returns to the live view";
-    if bar_switch(
-        ui,
-        is_still,
-        (icons::text(icons::IMAGE), "High-res"),
-        "High-res",
-        hint,
-    ) {
-        out.commands.push(if is_still {
-            Command::Live
-        } else {
-            Command::HighRes
-        });
+    let (projection, other) = match editor.shown().camera.projection {
+        Projection::Perspective => ("Perspective", Command::Orthographic),
+        Projection::Orthographic => ("Orthographic", Command::Perspective),
+    };
+    for (is_on, icon, text, name, hint, command) in [
+        (
+            markers,
+            icons::LIGHT,
+            "Lights",
+            "Lights",
+            "Show light markers (I on, U off)",
+            if markers {
+                Command::MarkersOff
+            } else {
+                Command::MarkersOn
+            },
+        ),
+        (
+            false,
+            icons::CAMERA,
+            projection,
+            "Projection",
+            "Projection (P perspective, O orthographic); click to change",
+            other,
+        ),
+        (
+            is_still,
+            icons::IMAGE,
+            "High-res",
+            "High-res",
+            "Trace the picture at full resolution (H); Esc returns to the live view",
+            if is_still {
+                Command::Live
+            } else {
+                Command::HighRes
+            },
+        ),
+    ] {
+        let switch = ui.add(Button::selectable(is_on, (icons::text(icon), text)));
+        if switch.accessible_name(name).hint(hint).clicked() {
+            out.commands.push(command);
+        }
     }
     let name = if editor.mode == Mode::LowRes {
         "Low-res"
@@ -348,17 +341,4 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         .accessible_name("Picture mode")
         .hint("What the picture area shows");
     egui::Popup::menu(&live).show(|ui| mode_entries(ui, editor, out));
-}
-
-fn bar_switch<'a>(
-    ui: &mut Ui,
-    on: bool,
-    text: impl egui::IntoAtoms<'a>,
-    name: &str,
-    hint: &str,
-) -> bool {
-    ui.add(Button::selectable(on, text))
-        .accessible_name(name)
-        .hint(hint)
-        .clicked()
 }
