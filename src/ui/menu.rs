@@ -127,10 +127,8 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     mode_entries(ui, editor, out);
     ui.separator();
     let projection = editor.shown().camera.projection;
-    for (kind, command) in [
-        (Projection::Perspective, Command::Perspective),
-        (Projection::Orthographic, Command::Orthographic),
-    ] {
+    for kind in [Projection::Perspective, Projection::Orthographic] {
+        let command = Command::Projection(kind);
         ticked(ui, projection == kind, &format!("{kind:?}"), command, out);
     }
     ui.separator();
@@ -286,8 +284,8 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let markers = editor.scene().light_visualization;
     let is_still = editor.mode == Mode::HighRes;
     let (projection, other) = match editor.shown().camera.projection {
-        Projection::Perspective => ("Perspective", Command::Orthographic),
-        Projection::Orthographic => ("Orthographic", Command::Perspective),
+        Projection::Perspective => ("Perspective", Projection::Orthographic),
+        Projection::Orthographic => ("Orthographic", Projection::Perspective),
     };
     for (is_on, icon, text, name, hint, command) in [
         (
@@ -296,11 +294,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             "Lights",
             "Lights",
             "Show light markers (I on, U off)",
-            if markers {
-                Command::MarkersOff
-            } else {
-                Command::MarkersOn
-            },
+            Command::Markers(!markers),
         ),
         (
             false,
@@ -308,7 +302,7 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
             projection,
             "Projection",
             "Projection (P perspective, O orthographic); click to change",
-            other,
+            Command::Projection(other),
         ),
         (
             is_still,

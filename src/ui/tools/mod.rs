@@ -17,6 +17,7 @@ mod grip;
 mod drag;
 
 pub use gizmo::label;
+pub use navigate::{looking_along, projected};
 pub use screen::Screen;
 
 use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
@@ -24,7 +25,7 @@ use glam::DVec3;
 
 use self::drag::{Drag, Pane};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{dollied, looking_along, projected};
+use self::navigate::dollied;
 use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question};
 use self::subject::Movable;
 use super::commands::Command;
@@ -34,7 +35,7 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Framing, Projection, around};
+use crate::scene::{Camera, Framing, around};
 use crate::words::shortened;
 
 /// Seconds that the pointer has to rest before the name of what it hovers is shown.
@@ -426,15 +427,4 @@ fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
         (a, if is_inwards { normal } else { -normal })
     };
     [side(0), side(1), side(2), side(3), (middle, forward)]
-}
-
-/// The camera that looks along a direction at the selection, or at everything.
-pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
-    looking_along(&editor.shown().camera, editor.middle(), direction)
-}
-
-/// The camera with another projection, in which the middle of the scene appears about as large as before.
-pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
-    let scene = editor.shown();
-    projected(&scene.camera, scene.middle(), projection)
 }
