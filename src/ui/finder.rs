@@ -66,12 +66,6 @@ enum Target {
     Addition(Addition),
 }
 
-impl Target {
-    fn is_command(&self, command: &Command) -> bool {
-        matches!(self, Self::Command(found) if found == command)
-    }
-}
-
 /// Other names of commands in menus and buttons, or other words for them, in lower case.
 const ALIASES: [(Command, &str); 24] = [
     (Command::Ask(Ask::SaveScene), "save as"),
@@ -254,16 +248,17 @@ fn commands<'a>(
 
 /// Returns the other names of a match.
 fn aliases_of(entry: &Match) -> &'static str {
-    let commands = ALIASES
-        .iter()
-        .filter(|(command, _)| entry.target.is_command(command));
-    let additions = ADDITION_ALIASES
-        .iter()
-        .filter(|(name, _)| entry.name == *name);
-    let mut words = commands
-        .map(|(_, words)| *words)
-        .chain(additions.map(|(_, words)| *words));
-    words.next().unwrap_or_default()
+    let words = match &entry.target {
+        Target::Command(own) => {
+            let mut aliases = ALIASES.iter();
+            aliases.find_map(|(command, words)| (command == own).then_some(*words))
+        }
+        Target::Addition(_) | Target::Selection(_) => {
+            let mut aliases = ADDITION_ALIASES.iter();
+            aliases.find_map(|(name, words)| (entry.name == *name).then_some(*words))
+        }
+    };
+    words.unwrap_or_default()
 }
 
 /// Yields the entries of the menu *Add*.
