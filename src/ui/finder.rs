@@ -271,18 +271,24 @@ fn choices<'a>(
     editor: &'a Editor,
     recent: &'a [PathBuf],
 ) -> impl Iterator<Item = (Command, String, String)> + 'a {
-    let shown = Aspect::EACH.map(|(aspect, name, _)| {
-        let name = format!("Show: {}", name.to_lowercase());
-        (Command::Aspect(aspect), name)
+    let shown = Aspect::EACH.map(|(aspect, name, _)| ("Show", name, Command::Aspect(aspect)));
+    let presets = Preset::ALL.map(|preset| {
+        let name = preset.words().0;
+        ("Ready-made flight", name, Command::Preset(preset))
     });
-    let panels = WindowPart::PANELS.map(|(part, name)| {
-        let name = format!("Show or hide panel: {}", name.to_lowercase());
-        (Command::Part(part), name)
-    });
-    let parts = WindowPart::OVER_PICTURE.map(|(part, name)| {
-        let name = format!("Show or hide: {}", name.to_lowercase());
-        (Command::Part(part), name)
-    });
+    let timings = Retime::ALL.map(|timing| ("Retime", timing.words().0, Command::Retime(timing)));
+    let panels =
+        WindowPart::PANELS.map(|(part, name)| ("Show or hide panel", name, Command::Part(part)));
+    let parts =
+        WindowPart::OVER_PICTURE.map(|(part, name)| ("Show or hide", name, Command::Part(part)));
+    let fixed = shown
+        .into_iter()
+        .chain(presets)
+        .chain(timings)
+        .chain(panels)
+        .chain(parts);
+    let fixed =
+        fixed.map(|(verb, name, command)| (command, format!("{verb}: {}", name.to_lowercase())));
     let examples = EXAMPLES.iter().enumerate().map(|(index, example)| {
         (
             Command::Leave(Next::Example(index)),
@@ -296,22 +302,7 @@ fn choices<'a>(
             format!("Go to bookmark: {}", bookmark.name),
         )
     });
-    let presets = Preset::ALL.map(|preset| {
-        let name = format!("Ready-made flight: {}", preset.words().0.to_lowercase());
-        (Command::Preset(preset), name)
-    });
-    let timings = Retime::ALL.map(|timing| {
-        let name = format!("Retime: {}", timing.words().0.to_lowercase());
-        (Command::Retime(timing), name)
-    });
-    let all = shown
-        .into_iter()
-        .chain(presets)
-        .chain(timings)
-        .chain(panels)
-        .chain(parts)
-        .chain(examples)
-        .chain(bookmarks);
+    let all = fixed.chain(examples).chain(bookmarks);
     let all = all.map(|(command, name)| (command, name, String::new()));
     let recent = recent.iter().map(|path| {
         let name = path.file_name().unwrap_or(path.as_os_str());
