@@ -1,6 +1,6 @@
 //! One figure of all stability maps: a row per subject, a column per method.
 
-use egui::{Align2, FontId, Painter, Pos2, Rect, TextStyle, Theme, Ui, pos2, vec2};
+use egui::{Align2, FontId, Painter, Rect, TextStyle, Theme, Ui, pos2, vec2};
 
 use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
@@ -8,7 +8,7 @@ use super::heat;
 use super::ramp;
 use super::rates;
 use crate::image::Image;
-use crate::lab::stability::{Map, number};
+use crate::lab::stability::{Axis, Map};
 use crate::words::capitalised;
 
 /// Width of the figure in points, and pixels per point.
@@ -169,36 +169,18 @@ fn label_axes(
     has_vertical_labels: bool,
 ) {
     let font = FontId::new(font.size * 0.85, font.family.clone());
-    let write = |at: Pos2, anchor: Align2, text: String| {
-        painter.text(at, anchor, text, font.clone(), color);
-    };
-    let (columns, rows) = (map.across.values.len(), map.up.values.len());
-    let stride = columns.div_ceil(6);
-    for (column, value) in map.across.values.iter().enumerate().step_by(stride) {
-        let x = squares.left() + (column as f32 + 0.5) * squares.width() / columns as f32;
-        write(
-            pos2(x, squares.bottom() + 2.0),
-            Align2::CENTER_TOP,
-            number(*value),
-        );
-    }
+    let stride = |axis: &Axis| axis.values.len().div_ceil(6);
+    let across = (&map.across, squares, stride(&map.across));
+    heat::number_columns(painter, across, (&font, color));
     let below = pos2(
         squares.center().x,
         squares.bottom() + 2.0 + LINE_HEIGHT * 0.85,
     );
-    write(below, Align2::CENTER_TOP, map.across.name.to_owned());
-    if !has_vertical_labels {
-        return;
+    let name = map.across.name;
+    painter.text(below, Align2::CENTER_TOP, name, font.clone(), color);
+    if has_vertical_labels {
+        heat::number_rows(painter, (&map.up, squares, stride(&map.up)), (&font, color));
+        let above = pos2(squares.left() - LEFT_MARGIN, squares.top() - 2.0);
+        painter.text(above, Align2::LEFT_BOTTOM, map.up.name, font, color);
     }
-    let stride = rows.div_ceil(6);
-    for (row, value) in map.up.values.iter().enumerate().step_by(stride) {
-        let y = squares.bottom() - (row as f32 + 0.5) * squares.height() / rows as f32;
-        write(
-            pos2(squares.left() - 4.0, y),
-            Align2::RIGHT_CENTER,
-            number(*value),
-        );
-    }
-    let above = pos2(squares.left() - LEFT_MARGIN, squares.top() - 2.0);
-    write(above, Align2::LEFT_BOTTOM, map.up.name.to_owned());
 }
