@@ -78,8 +78,9 @@ pub struct Lab {
     stored_study: Background<Option<Study>>,
 }
 
-impl Default for Lab {
-    fn default() -> Self {
+impl Lab {
+    /// Creates a lab that stores its studies in a folder, if there is one.
+    pub fn new(folder: Option<PathBuf>) -> Self {
         Self {
             study: None,
             is_running: false,
@@ -100,19 +101,9 @@ impl Default for Lab {
             stability: Stability::default(),
             asks_povray: false,
             notice: "",
-            folder: None,
+            folder,
             looked_for: None,
             stored_study: Background::default(),
-        }
-    }
-}
-
-impl Lab {
-    /// Creates a lab that stores its studies in a folder, if there is one.
-    pub fn new(folder: Option<PathBuf>) -> Self {
-        Self {
-            folder,
-            ..Self::default()
         }
     }
 
