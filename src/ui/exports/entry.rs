@@ -190,17 +190,12 @@ impl Entry {
             return;
         };
         let written = state.done.written;
-        let (made_for, texture) = self.thumb.get_or_insert_with(|| {
-            let load = |name| {
-                ui.ctx()
-                    .load_texture(name, to_color_image(image), TextureOptions::LINEAR)
-            };
-            (written, load("exported"))
-        });
-        if *made_for != written {
-            *made_for = written;
-            texture.set(to_color_image(image), TextureOptions::LINEAR);
-        }
+        let thumb = self.thumb.take().filter(|(of, _)| *of == written);
+        let (_, texture) = self.thumb.insert(thumb.unwrap_or_else(|| {
+            let image = to_color_image(image);
+            let texture = ui.load_texture("exported", image, TextureOptions::LINEAR);
+            (written, texture)
+        }));
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
     }
 }
