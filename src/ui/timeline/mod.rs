@@ -59,8 +59,6 @@ pub struct TimelinePanel {
     document: u64,
     /// The UI frame in which the pointer was last over the panel.
     hovered_in: u64,
-    /// The UI frame in which the panel was last shown.
-    frame: u64,
     rows: KeyRows,
     graph: Graph,
     /// Cached duration of the pauses, with the animation it was computed for.
@@ -75,7 +73,6 @@ impl Default for TimelinePanel {
             zoomed: None,
             document: 0,
             hovered_in: 0,
-            frame: 0,
             rows: KeyRows::default(),
             graph: Graph::default(),
             paused: None,
@@ -125,7 +122,6 @@ impl TimelinePanel {
             .zoomed
             .filter(|(_, last)| self.document == editor.documents() && *last <= end * MAX_ZOOM_OUT);
         self.document = editor.documents();
-        self.frame = ui.cumulative_frame_nr();
         if self.zoomed.is_some() || !ui.input(|input| input.pointer.any_down()) {
             self.span = self.zoomed.unwrap_or((0.0, end));
         }
@@ -184,7 +180,7 @@ impl TimelinePanel {
         let at = ui.input(|input| input.pointer.hover_pos());
         let at = at.filter(|_| ui.rect_contains_pointer(area));
         let Some(at) = at else { return };
-        self.hovered_in = self.frame;
+        self.hovered_in = ui.cumulative_frame_nr();
         let (factor, moved, is_middle) = ui.input(|input| {
             let pointer = &input.pointer;
             (input.zoom_delta(), pointer.delta().x, pointer.middle_down())
