@@ -49,10 +49,10 @@ pub struct Place {
 impl Display {
     /// Takes a picture, unless a newer one is shown.
     pub fn take(&mut self, ctx: &Context, frame: Frame) {
-        let place = if frame.is_still {
-            &mut self.still
+        let (place, name) = if frame.is_still {
+            (&mut self.still, "still picture")
         } else {
-            &mut self.live
+            (&mut self.live, "live view")
         };
         if place
             .as_ref()
@@ -60,11 +60,6 @@ impl Display {
         {
             return;
         }
-        let name = if frame.is_still {
-            "still picture"
-        } else {
-            "live view"
-        };
         // A graphics card limits the size of textures. The file that is written keeps its full size.
         let longest = ctx.input(|input| input.max_texture_side).max(1);
         let side = frame.image.width.max(frame.image.height);
