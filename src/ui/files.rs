@@ -82,12 +82,8 @@ impl Files {
         });
     }
 
-    /// Writes the document to its file, or asks for a path if it has none.
-    pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
-        self.save_then(ctx, editor, None)
-    }
-
-    fn save_then(
+    /// Writes the document to its file, or asks for a path if it has none; `then` follows.
+    pub fn save(
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
@@ -208,7 +204,7 @@ impl Files {
                 None
             }
             (Prompt::Unsaved(next) | Prompt::Saving(next), Reply::Yes) => {
-                self.save_then(&ctx, editor, Some(next))
+                self.save(&ctx, editor, Some(next))
             }
             (Prompt::Unsaved(next), Reply::No) => self.proceed(&ctx, editor, next),
             (Prompt::Quit, Reply::Yes) => Some(FileOutcome::Quit),
@@ -333,7 +329,7 @@ impl Files {
         match answer {
             Reply::Yes => {
                 theirs.reject(editor);
-                return request.and_then(|_| self.save_then(ctx, editor, then));
+                return request.and_then(|_| self.save(ctx, editor, then));
             }
             Reply::No => {
                 theirs.accept(editor);
@@ -385,11 +381,8 @@ impl Files {
     }
 
     fn take_finished_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
-        let first = if self.is_free() {
-            self.reading.front_mut()
-        } else {
-            None
-        };
+        let is_free = self.is_free();
+        let first = self.reading.front_mut().filter(|_| is_free);
         let Some(read) = first.and_then(|reading| reading.wait(wait)) else {
             return;
         };

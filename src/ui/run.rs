@@ -107,7 +107,7 @@ impl App {
             // Nothing happens before the user answers.
             Command::Ask(ask) => self.files.ask(ctx, &mut self.editor, ask),
             Command::Save => {
-                let outcome = self.files.save(ctx, &mut self.editor);
+                let outcome = self.files.save(ctx, &mut self.editor, None);
                 self.act_on(ctx, outcome);
             }
             Command::Escape => self.escape(ctx),
