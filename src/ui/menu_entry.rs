@@ -1,8 +1,9 @@
-//! A menu entry, and the entries that several menus share.
+//! Widgets that request a command: menu entries, those that several menus share, and others.
 
-use egui::{Button, Color32, Role, Ui, WidgetInfo};
+use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
-use super::commands::{Command, first_key};
+use super::commands::{Command, first_key, with_key};
+use super::hint::Hinted as _;
 use super::icons;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
@@ -53,6 +54,18 @@ fn add(
         None => entry,
     };
     if entry.clicked() {
+        out.commands.push(command);
+    }
+}
+
+/// Explains a widget with these words and the key of a command, which a click on the widget requests.
+pub fn on_click(
+    ui: &Ui,
+    widget: Response,
+    (words, command): (&str, Command),
+    out: &mut UiRequests,
+) {
+    if widget.hint(with_key(ui, words, &command)).clicked() {
         out.commands.push(command);
     }
 }

@@ -2,7 +2,8 @@
 
 use egui::{Button, DragValue, Label, RichText, Ui};
 
-use super::super::commands::{Command, with_key};
+use super::super::commands::Command;
+use super::super::menu_entry::on_click;
 use super::super::requests::UiRequests;
 use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
@@ -74,12 +75,7 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
-        if timeline
-            .hint(with_key(ui, "Keys and playback", &Command::Timeline))
-            .clicked()
-        {
-            out.commands.push(Command::Timeline);
-        }
+        on_click(ui, timeline, ("Keys and playback", Command::Timeline), out);
         choose(ui, &mut self.tab, TABS);
         if self.tab == Tab::Stability {
             return None;

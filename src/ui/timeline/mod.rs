@@ -30,13 +30,13 @@ pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 pub use self::transport::{actions, clock};
-use super::commands::{Command, take_escape, with_key};
+use super::commands::{Command, take_escape};
+use super::menu_entry::on_click;
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::animate::paused_seconds;
 use crate::editor::Editor;
 use crate::scene::Animation;
-use crate::ui::hint::Hinted as _;
 
 /// Minimum length of the time axis, in seconds.
 const MIN_SECONDS: f64 = 4.0;
@@ -94,12 +94,7 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             let _ = ui.selectable_label(true, "Timeline");
             let lab = ui.selectable_label(false, "Lab");
-            if lab
-                .hint(with_key(ui, "Speed against accuracy", &Command::Lab))
-                .clicked()
-            {
-                out.commands.push(Command::Lab);
-            }
+            on_click(ui, lab, ("Speed against accuracy", Command::Lab), out);
             ui.separator();
             transport::show(ui, editor, shown_fps, &mut self.shows_graph, out);
         });
