@@ -17,7 +17,7 @@ use egui::{
 };
 
 use self::drop::{accept_drop, accept_drop_at_end};
-use self::entry::{Renaming, RowStyle, color_of, entry, eye, rename_field, row};
+use self::entry::{Renaming, RowStyle, color_of, entry, eye_button, rename_field, row};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use self::walk::{Listed, Walk};
@@ -389,9 +389,12 @@ impl Outliner {
                 offer(ui, editor, text, command, out);
             }
         });
-        if visible.is_some() {
+        if let Some(visible) = visible {
             ui.scope_builder(UiBuilder::new().max_rect(eye_rect), |ui| {
-                eye(ui, scene, item, name, out);
+                if eye_button(ui, visible, name) {
+                    let edit = Edit::visible(scene, item, !visible);
+                    out.actions.extend(edit.map(Action::Edit));
+                }
             });
         }
         Some(response)
@@ -445,5 +448,5 @@ fn select_on_click(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out
     } else {
         Selection::all([item])
     };
-    out.actions.push(Action::Select(selected));
+    out.select(selected);
 }

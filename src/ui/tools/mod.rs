@@ -222,7 +222,7 @@ impl Tools {
                 && !view.editor.selection().has(item)
             {
                 let selected = view.editor.selection().picked(view.editor.scene(), &[item]);
-                out.actions.push(Action::Select(selected));
+                out.select(selected);
             }
         }
         let menu = response.context_menu(|ui| {
@@ -359,7 +359,7 @@ impl Tools {
             (Some(item), false) => before.picked(scene, &[item]),
             (None, false) => Selection::default(),
         };
-        out.actions.push(Action::Select(selected));
+        out.select(selected);
     }
 
     fn select_behind(&mut self, view: &Pane, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
