@@ -130,9 +130,8 @@ pub fn report_replaced_keys(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let before_move: Option<BeforeMove> = ui.data_mut(|data| data.remove_temp(drag_id()));
     let before = before_move.map_or(0, |before_move| before_move.animation.all_keys().len());
-    let replaced = before.saturating_sub(editor.scene().animation.all_keys().len());
-    out.actions
-        .extend(replaced_keys_message(replaced).map(Action::Tell));
+    let message = replaced_keys_message(before, &editor.scene().animation);
+    out.actions.extend(message.map(Action::Tell));
 }
 
 /// The state before the time of keys was dragged: a drag replaces the keys that it ends on, not those that it
@@ -164,8 +163,9 @@ fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
     out.select(new);
 }
 
-/// The message after moved keys have replaced `count` others, if any.
-pub fn replaced_keys_message(count: usize) -> Option<String> {
+/// The message after moved keys have replaced others, so that of `before` keys fewer are left.
+pub fn replaced_keys_message(before: usize, now: &Animation) -> Option<String> {
+    let count = before.saturating_sub(now.all_keys().len());
     let them = if count == 1 { "it" } else { "them" };
     let keys = counted(count, "key");
     (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))

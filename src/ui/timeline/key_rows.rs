@@ -59,8 +59,7 @@ impl KeyDrag {
             0
         };
         let before = self.before.all_keys().len() + copies;
-        let replaced = before.saturating_sub(now.all_keys().len());
-        replaced_keys_message(replaced).filter(|_| *now != *self.before)
+        replaced_keys_message(before, now).filter(|_| *now != *self.before)
     }
 }
 

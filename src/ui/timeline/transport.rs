@@ -320,12 +320,11 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
     let added = places.len() + animation.all_keys().len();
-    let replaced = added.saturating_sub(changed.all_keys().len());
+    let message = replaced_keys_message(added, &changed).map(Action::Tell);
     let made = [
         Action::Edit(Edit::animation(changed, "Copy keys")),
         Action::Select(new.into()),
     ];
-    let message = replaced_keys_message(replaced).map(Action::Tell);
     made.into_iter().chain(message).collect()
 }
 
