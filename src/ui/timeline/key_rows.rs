@@ -152,7 +152,7 @@ impl KeyRows {
         (track, keys): (Option<usize>, &[Key<T>]),
         out: &mut UiRequests,
     ) {
-        let (rect, response) = band(ui, scale, Sense::click_and_drag());
+        let (rect, response) = band(ui, scale);
         self.press_on_empty(ui, &response, editor, out);
         self.collect_in_marquee(ui, (scale, rect), (track, keys));
         let tracks = &editor.scene().animation.tracks;
