@@ -11,9 +11,8 @@ use crate::image::Image;
 use crate::lab::stability::{Axis, Map};
 use crate::words::capitalised;
 
-/// Width of the figure in points, and pixels per point.
+/// Width of the figure in points.
 const WIDTH: f32 = 800.0;
-const SCALE: f32 = 2.0;
 /// Maximum number of maps side by side; further ones wrap to the next line.
 const COLUMNS: usize = 4;
 /// Space for the numbers to the left of a map and below it.
@@ -32,20 +31,16 @@ pub fn stability_picture(maps: &[Map]) -> Image {
         .chunk_by(|one, other| one.subject == other.subject)
         .collect();
     let height = rows.iter().map(|row| height_of(row)).sum::<f32>() + 6.0 * GRID + LINE_HEIGHT;
-    draw(
-        (WIDTH as u32, height.ceil() as u32),
-        SCALE,
-        Theme::Dark,
-        |ui| {
-            let area = ui.max_rect().shrink(2.0 * GRID);
-            let mut top = area.top() + show_scale(ui, area);
-            for row in &rows {
-                let remaining = Rect::from_min_max(pos2(area.left(), top), area.max);
-                show_row(ui, remaining, row);
-                top += height_of(row);
-            }
-        },
-    )
+    let size = (WIDTH as u32, height.ceil() as u32);
+    draw(size, Theme::Dark, |ui| {
+        let area = ui.max_rect().shrink(2.0 * GRID);
+        let mut top = area.top() + show_scale(ui, area);
+        for row in &rows {
+            let remaining = Rect::from_min_max(pos2(area.left(), top), area.max);
+            show_row(ui, remaining, row);
+            top += height_of(row);
+        }
+    })
 }
 
 fn has_single_row(map: &Map) -> bool {
