@@ -363,13 +363,8 @@ fn scene_items<'a>(
 ) -> impl Iterator<Item = Match> + 'a {
     let scene = editor.scene();
     let lights = (0..scene.lights.len()).map(|index| (Item::light(index), "light"));
-    let objects = (0..scene.objects.len()).map(|index| {
-        let kind = scene
-            .objects
-            .get(index)
-            .map_or("", |object| object.shape.kind());
-        (Item::object(index), kind)
-    });
+    let objects = scene.objects.iter().enumerate();
+    let objects = objects.map(|(index, object)| (Item::object(index), object.shape.kind()));
     let packs = (0..scene.color_packs.len()).map(|index| (Item::pack(index), "color pack"));
     let all = lights.chain(objects).chain(packs);
     let all = all.map(|(item, kind)| (item.name(scene).unwrap_or_default(), kind, Some(item)));
