@@ -234,21 +234,14 @@ impl PathPrompt {
 
     fn warning(&self) -> Option<Warning> {
         let path = self.path();
-        let impossible = |words: String| {
-            Some(Warning {
-                words,
-                is_possible: false,
-            })
-        };
+        let warning = |words, is_possible| Some(Warning { words, is_possible });
+        let impossible = |words: String| warning(words, false);
         if let Some(words) = self.problem.clone() {
             return impossible(words);
         }
         if let Some(words) = self.refused.clone() {
             // The operation may succeed now.
-            return Some(Warning {
-                words,
-                is_possible: true,
-            });
+            return warning(words, true);
         }
         if let Some(file) = self.file_in_the_way() {
             return impossible(format!("{} is a file, not a folder", file.display()));
@@ -279,10 +272,7 @@ impl PathPrompt {
             } else {
                 format!("Replaces {}", path.display())
             };
-            return Some(Warning {
-                words,
-                is_possible: true,
-            });
+            return warning(words, true);
         }
         if !self.ask.writes() && !takes_folder && !path.is_file() {
             let path = shortened(&path.to_string_lossy(), LONGEST_PATH);
