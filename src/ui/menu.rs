@@ -13,7 +13,7 @@ use super::flying::{MAX_FACTOR, MIN_FACTOR};
 use super::hint::Hinted as _;
 use super::icons;
 use super::layout::{Below, Layout, WindowPart};
-use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
+use super::menu_entry::{ITEM_COMMANDS, entry, offer, on_click, ticked};
 use super::number::{Field, drag_unlabelled};
 use super::obstacles::is_enabled;
 use super::requests::UiRequests;
@@ -67,9 +67,9 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
                     .file_name()
                     .unwrap_or(path.as_os_str())
                     .to_string_lossy();
-                if ui.button(name).hint(path.display().to_string()).clicked() {
-                    out.commands.push(Command::Leave(Next::Open(path.clone())));
-                }
+                let (button, hint) = (ui.button(name), path.display().to_string());
+                let open = Command::Leave(Next::Open(path.clone()));
+                on_click(ui, button, (&hint, open), out);
             }
         });
     });
@@ -135,21 +135,16 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     entry(ui, "Frame selection", Command::FrameSelected, out);
     entry(ui, "Frame everything", Command::FrameAll, out);
     ui.menu_button("Look from", |ui| {
-        for (text, command) in [
-            ("The front", Command::ViewFront),
-            ("The right", Command::ViewRight),
-            ("Above", Command::ViewTop),
-        ] {
-            entry(ui, text, command, out);
-        }
+        entry(ui, "The front", Command::ViewFront, out);
+        entry(ui, "The right", Command::ViewRight, out);
+        entry(ui, "Above", Command::ViewTop, out);
     });
     ui.menu_button("Bookmarked views", |ui| bookmark_entries(ui, editor, out));
     ui.separator();
     ui.menu_button("Show", |ui| {
         for (aspect, name, hint) in Aspect::EACH {
-            if ui.radio(layout.aspect == aspect, name).hint(hint).clicked() {
-                out.commands.push(Command::Aspect(aspect));
-            }
+            let radio = ui.radio(layout.aspect == aspect, name);
+            on_click(ui, radio, (hint, Command::Aspect(aspect)), out);
         }
     });
     ui.menu_button("Panels", |ui| panel_entries(ui, layout, out));
@@ -170,13 +165,9 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
             drag_unlabelled(ui, &field, &mut layout.fly_speed);
         });
     ui.menu_button("Text and buttons", |ui| {
-        for (text, zoom) in [
-            ("Larger", Zoom::In),
-            ("Smaller", Zoom::Out),
-            ("Default size", Zoom::Default),
-        ] {
-            entry(ui, text, Command::Zoom(zoom), out);
-        }
+        entry(ui, "Larger", Command::Zoom(Zoom::In), out);
+        entry(ui, "Smaller", Command::Zoom(Zoom::Out), out);
+        entry(ui, "Default size", Command::Zoom(Zoom::Default), out);
     });
     ui.separator();
     theme_choice(ui, out);
@@ -209,23 +200,16 @@ fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
 }
 
 fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    for (text, command) in [
-        ("Play or pause", Command::Play),
-        ("Record flight", Command::Record),
-        ("Stop recording", Command::StopRecording),
-    ] {
-        offer(ui, editor, text, command, out);
-    }
+    let mut offered = |ui: &mut Ui, text, command| offer(ui, editor, text, command, out);
+    offered(ui, "Play or pause", Command::Play);
+    offered(ui, "Record flight", Command::Record);
+    offered(ui, "Stop recording", Command::StopRecording);
     ui.separator();
-    for (text, command) in [
-        ("Add key", Command::AddKey),
-        ("Select all keys", Command::SelectKeys),
-        ("Previous key", Command::PreviousKey),
-        ("Next key", Command::NextKey),
-        ("Look through the shot", Command::LookThrough),
-    ] {
-        offer(ui, editor, text, command, out);
-    }
+    offered(ui, "Add key", Command::AddKey);
+    offered(ui, "Select all keys", Command::SelectKeys);
+    offered(ui, "Previous key", Command::PreviousKey);
+    offered(ui, "Next key", Command::NextKey);
+    offered(ui, "Look through the shot", Command::LookThrough);
     ui.separator();
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
     let can_retime = is_enabled(&Command::Retime(Retime::Smooth), editor);
@@ -247,18 +231,16 @@ fn preset_entries(ui: &mut Ui, out: &mut UiRequests) {
     for preset in Preset::ALL {
         let (name, hint) = preset.words();
         let hint = format!("{hint}. Replaces the camera's keys");
-        if ui.button(name).hint(hint).clicked() {
-            out.commands.push(Command::Preset(preset));
-        }
+        let button = ui.button(name);
+        on_click(ui, button, (&hint, Command::Preset(preset)), out);
     }
 }
 
 fn retime_entries(ui: &mut Ui, out: &mut UiRequests) {
     for retime in Retime::ALL {
         let (name, hint) = retime.words();
-        if ui.button(name).hint(hint).clicked() {
-            out.commands.push(Command::Retime(retime));
-        }
+        let button = ui.button(name);
+        on_click(ui, button, (hint, Command::Retime(retime)), out);
     }
 }
 

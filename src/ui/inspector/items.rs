@@ -13,6 +13,7 @@ use crate::scene::{
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
+use crate::ui::menu_entry::on_click;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{EditedPart, Field, FieldRows, color_names, coordinate, fraction};
 use crate::words::counted;
@@ -231,9 +232,8 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
         Shape::Triangle(_) => {
             let hint =
                 "Join this triangle and all that are connected by shared corners into one mesh";
-            if tool_button(rows, "Join connected", hint, true) {
-                out.commands.push(Command::Join);
-            }
+            let join = rows.ui.button("Join connected");
+            on_click(rows.ui, join, (hint, Command::Join), out);
         }
         Shape::Mesh(mesh) => {
             let faces = mesh.source.triangles().faces().len();
@@ -243,17 +243,12 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
             }
             let hint =
                 format!("Make each triangle an object of its own, up to {MAX_SEPARATED} of them");
-            if tool_button(rows, "Separate", &hint, mesh.is_separable()) {
-                out.commands.push(Command::Separate);
-            }
+            let separate = egui::Button::new("Separate");
+            let separate = rows.ui.add_enabled(mesh.is_separable(), separate);
+            on_click(rows.ui, separate, (&hint, Command::Separate), out);
         }
         _ => {}
     }
-}
-
-fn tool_button(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool {
-    let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
-    button.hint(hint).clicked()
 }
 
 /// Counts the users of a color pack. This visits every object; a drag cannot change the count, so it is not

@@ -243,12 +243,8 @@ impl Tools {
             }
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, out);
-            for (text, command) in [
-                ("Frame selection", Command::FrameSelected),
-                ("Frame everything", Command::FrameAll),
-            ] {
-                entry(ui, text, command, out);
-            }
+            entry(ui, "Frame selection", Command::FrameSelected, out);
+            entry(ui, "Frame everything", Command::FrameAll, out);
         });
         // Once the menu is closed, its item no longer matters.
         self.menu_waits &= menu.is_some();
