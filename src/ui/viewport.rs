@@ -1,7 +1,5 @@
 //! The picture in the middle of the window: exact pixels, letterboxed.
 
-use std::sync::Arc;
-
 use egui::{
     Color32, Context, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureFilter,
     TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
@@ -208,7 +206,7 @@ pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
 }
 
 /// Describes a picture for the status line.
-pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
+pub fn describe(frame: &Frame, scene: &Scene) -> String {
     let (width, height) = frame.full_size;
     let (coarse_width, coarse_height) = (frame.image.width, frame.image.height);
     let size = if frame.step == 1 {
