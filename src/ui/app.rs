@@ -405,7 +405,7 @@ impl eframe::App for App {
             || self.overlay.is_dragging(&ctx);
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
-        self.toasts.show(&ctx, place.rect, self.exports.place());
+        self.toasts.show(&ctx, place.rect, self.exports.window_rect);
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
         if let Some(jobs) = self.thumbs.jobs(&ctx, &self.editor, place.rect) {

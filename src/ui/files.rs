@@ -364,7 +364,7 @@ impl Files {
     /// window stays usable.
     pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
         // A new scene replaces one that is being read; meshes for this document go on if the document does.
-        self.reading.retain(|reading| !reading.is_scene());
+        self.reading.retain(|reading| !reading.is_scene);
         self.reading.push_front(Reading::scene(editor, path));
         self.take_finished_read(ctx, editor, MAX_BLOCKING);
     }

@@ -143,7 +143,7 @@ impl Drag {
     /// The handle that is being dragged.
     pub fn handle(&self) -> Option<Handle> {
         match self {
-            Self::Grip(grip) => Some(grip.handle()),
+            Self::Grip(grip) => Some(grip.handle),
             _ => None,
         }
     }

@@ -20,7 +20,8 @@ const NEGLIGIBLE_SHARE: f64 = 1e-9;
 /// A handle that is being dragged.
 #[derive(Clone, Debug)]
 pub struct Grip {
-    handle: Handle,
+    /// The handle.
+    pub handle: Handle,
     /// The items as they were at the start.
     before: Vec<Movable>,
     /// The centre of rotation and scaling.
@@ -90,11 +91,6 @@ impl Grip {
             }
             Some(_) => None,
         }
-    }
-
-    /// The handle that is being dragged.
-    pub fn handle(&self) -> Handle {
-        self.handle
     }
 
     /// The point in the scene that a screen position means for this handle.
