@@ -73,12 +73,9 @@ impl Display {
                     None => shown.texture.set(texture(&frame.image), SHARP),
                     Some(parts) => {
                         for part in parts {
-                            let place = [part.columns.start, part.rows.start];
-                            shown.texture.set_partial(
-                                place,
-                                part_to_color_image(&frame.image, &part),
-                                SHARP,
-                            );
+                            let place = [part.columns.0, part.rows.0];
+                            let image = part_to_color_image(&frame.image, part);
+                            shown.texture.set_partial(place, image, SHARP);
                         }
                     }
                 }
