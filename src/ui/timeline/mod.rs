@@ -55,8 +55,6 @@ pub struct TimelinePanel {
     span: (f64, f64),
     /// The section that the user zoomed to, if not everything is shown.
     zoomed: Option<(f64, f64)>,
-    /// The document that this section belongs to.
-    document: u64,
     /// The UI frame in which the pointer was last over the panel.
     hovered_in: u64,
     rows: KeyRows,
@@ -71,7 +69,6 @@ impl Default for TimelinePanel {
             shows_graph: true,
             span: (0.0, MIN_SECONDS),
             zoomed: None,
-            document: 0,
             hovered_in: 0,
             rows: KeyRows::default(),
             graph: Graph::default(),
@@ -113,10 +110,7 @@ impl TimelinePanel {
             return;
         }
         let end = shown_end(animation, editor.timeline().playhead);
-        self.zoomed = self
-            .zoomed
-            .filter(|(_, last)| self.document == editor.documents() && *last <= end * MAX_ZOOM_OUT);
-        self.document = editor.documents();
+        self.zoomed = self.zoomed.filter(|(_, last)| *last <= end * MAX_ZOOM_OUT);
         if self.zoomed.is_some() || !ui.input(|input| input.pointer.any_down()) {
             self.span = self.zoomed.unwrap_or((0.0, end));
         }

@@ -63,8 +63,6 @@ pub struct Tools {
     /// For selecting what is behind other things: the position, the revision of the picture, and the things found
     /// there so far, front to back.
     behind: Option<(Pos2, u64, Vec<Thing>)>,
-    /// The document that this state belongs to.
-    document: u64,
     /// The position at which the context menu was opened.
     menu_at: Option<Pos2>,
     /// Whether it is still unknown what is at that position.
@@ -125,10 +123,6 @@ impl Tools {
         let Some(screen) = Screen::new(&editor.shown().camera, place.rect) else {
             return;
         };
-        if self.document != editor.documents() {
-            self.rest();
-            self.document = editor.documents();
-        }
         self.view = Some(place.rect);
         let view = Pane {
             editor,
