@@ -328,13 +328,7 @@ impl App {
             }
             Command::Rename => {
                 self.layout.show_outliner();
-                let (scene, selection) = (editor.scene(), editor.selection());
-                if let [item] = selection.items() {
-                    self.outliner.rename(scene, *item);
-                } else {
-                    let group = selection.group(scene);
-                    self.outliner.rename_group(group.map(str::to_owned));
-                }
+                self.outliner.rename(editor.scene(), editor.selection());
                 return None;
             }
             Command::MoveUp | Command::MoveDown => {

@@ -51,25 +51,22 @@ pub struct Outliner {
 }
 
 impl Outliner {
-    /// Starts renaming an item in its row.
-    pub fn rename(&mut self, scene: &Scene, item: Item) {
+    /// Starts renaming the selected item or group in its row.
+    pub fn rename(&mut self, scene: &Scene, selected: &Selection) {
+        let Some(item) = selected.item() else { return };
         self.filter.clear();
         self.folded.retain(|kind| *kind != item.kind);
+        self.reveals_selection = true;
+        if selected.items().len() > 1 {
+            self.group_rows.renaming = selected.group(scene).map(str::to_owned);
+            return;
+        }
         if let (ItemKind::Object, Some(object)) = (item.kind, scene.objects.get(item.index)) {
             self.group_rows
                 .folded
                 .retain(|group| *group != object.group);
         }
         self.renaming = item.name(scene).map(|name| (item, name.to_owned()));
-        self.reveals_selection = true;
-    }
-
-    /// Starts renaming a group in its row.
-    pub fn rename_group(&mut self, group: Option<String>) {
-        self.filter.clear();
-        self.folded.retain(|kind| *kind != ItemKind::Object);
-        self.group_rows.renaming = group;
-        self.reveals_selection = true;
     }
 
     fn is_filtered(&self) -> bool {
