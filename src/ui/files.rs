@@ -276,7 +276,7 @@ impl Files {
             return;
         };
         let is_gone = self.watch.note_gone(editor, &path);
-        let (is_changed, broken) = (self.watch.is_changed(&path), self.watch.take_broken());
+        let (is_changed, broken) = (self.watch.is_changed(&path), self.watch.broken.take());
         if let Some(why) = broken.filter(|_| !is_changed) {
             report_lost(editor, OwnFile::Broken, why);
         }
@@ -290,7 +290,10 @@ impl Files {
         let theirs = match Document::load_stamped(&path) {
             Ok(theirs) => theirs,
             Err(SceneError::Disk { .. }) => return self.watch.forget_modified(),
-            Err(error) => return self.watch.note_broken(error.to_string()),
+            Err(error) => {
+                self.watch.broken = Some(error.to_string());
+                return;
+            }
         };
         self.resolve_external_change(editor, Ok(theirs), None);
     }

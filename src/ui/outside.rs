@@ -39,7 +39,7 @@ pub struct Watch {
     /// Path of the open file and time of its last known change.
     last_modified: Option<(PathBuf, SystemTime)>,
     /// Why it could not be read. Reported only if the file is the same at the next check, since it may be half written.
-    broken: Option<String>,
+    pub broken: Option<String>,
     /// File that was missing at the last check.
     missing: Option<PathBuf>,
     /// Objects at the last check, and their mesh files.
@@ -186,16 +186,6 @@ impl Watch {
     /// Makes the next check count the file as changed, because it was missing or unreachable.
     pub fn forget_modified(&mut self) {
         self.last_modified = None;
-    }
-
-    /// Notes why the file could not be read.
-    pub fn note_broken(&mut self, why: String) {
-        self.broken = Some(why);
-    }
-
-    /// Takes the reason why the file could not be read at the previous check.
-    pub fn take_broken(&mut self) -> Option<String> {
-        self.broken.take()
     }
 }
 
