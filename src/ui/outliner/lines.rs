@@ -12,7 +12,8 @@ use crate::ui::icons;
 #[derive(Clone, Copy, Debug)]
 pub enum Line {
     Fixed(&'static Selection, MaterialIcon, &'static str),
-    Title(ItemKind, usize),
+    /// The title of a list: the number of items in it, and of its rows.
+    Title(ItemKind, usize, usize),
     /// A group of objects, by its index in [`Groups`].
     Group(usize),
     /// An item, and whether it is listed as a member of a group.
@@ -156,7 +157,7 @@ impl Lines<'_> {
         let mut row = index - FIXED_ROWS.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
-                return Some(Line::Title(*kind, *count));
+                return Some(Line::Title(*kind, *count, entries.len()));
             }
             row -= 1;
             let line = entries.get(*kind, row);
@@ -166,13 +167,6 @@ impl Lines<'_> {
             row -= entries.len();
         }
         None
-    }
-
-    /// The number of rows of a kind.
-    pub fn row_count(&self, kind: ItemKind) -> usize {
-        let mut groups = self.0.iter();
-        let group = groups.find(|(group, ..)| *group == kind);
-        group.map_or(0, |(.., entries)| entries.len())
     }
 
     /// The row of an item, if it is listed.

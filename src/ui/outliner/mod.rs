@@ -191,8 +191,7 @@ impl Outliner {
                     out.select(selection.clone());
                 }
             }
-            Some(Line::Title(kind, count)) => {
-                let listed_count = listed.lines.row_count(kind);
+            Some(Line::Title(kind, count, listed_count)) => {
                 let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                 let words = if is_all {
                     count.to_string()
