@@ -91,8 +91,8 @@ impl Entry {
         state: Option<&ExportState>,
         editor: &mut Editor,
     ) -> Option<ExportOrder> {
-        let problem = self.order.as_mut()?.take_problem();
-        if let Some(why) = problem {
+        let order = self.order.as_mut()?;
+        if let Some(why) = order.take_problem() {
             let name = &self.name;
             editor.report_error_in(
                 UNSTORED_TOPIC,
@@ -122,12 +122,10 @@ impl Entry {
             return None;
         }
         let Some(state) = state else {
-            if let Some(ExportOrder { name, settings, .. }) = &self.order {
-                let folder = &settings.folder;
-                editor.notify(format!(
-                    "{name} was cancelled; finished frames are kept in {folder}"
-                ));
-            }
+            let (name, folder) = (&self.name, &order.settings.folder);
+            editor.notify(format!(
+                "{name} was cancelled; finished frames are kept in {folder}"
+            ));
             self.end();
             return None;
         };
