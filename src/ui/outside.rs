@@ -32,8 +32,8 @@ pub struct Watch {
     remaining_checks: u32,
     /// The watched files, the open one last.
     watched: Vec<Watched>,
-    /// Their marks at the last check.
-    last_marks: Vec<Marked>,
+    /// The same files, with their marks at the last check.
+    last_marks: Vec<(Option<Marks>, Watched)>,
     /// Thread that watches while nothing changes, since a resting window draws no frames.
     guard: Option<Guard>,
     /// Path of the open file and time of its last known change.
@@ -79,10 +79,8 @@ impl Watch {
         if is_due {
             self.last_check = Some(Instant::now());
             self.remaining_checks = self.remaining_checks.saturating_sub(1);
-            let marked = self.watched.iter();
-            self.last_marks = marked
-                .map(|(file, read)| (marks_of_mesh(file), file.clone(), *read))
-                .collect();
+            let files = self.watched.iter().cloned();
+            self.last_marks = files.map(|file| (marks_of_mesh(&file.0), file)).collect();
         } else if self.remaining_checks == 0 {
             self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.last_marks)));
             return false;
@@ -212,8 +210,6 @@ struct WatchedMesh {
 
 /// A file, and its marks when its mesh was read.
 type Watched = (PathBuf, Option<Marks>);
-/// The current marks of a file, its path, and its marks when its mesh was read.
-type Marked = (Option<Marks>, PathBuf, Option<Marks>);
 
 impl WatchedMesh {
     fn full_path(&self) -> PathBuf {
@@ -231,15 +227,14 @@ struct Guard {
 }
 
 impl Guard {
-    fn new(ctx: &Context, marked: Vec<Marked>) -> Self {
-        let files = marked.iter().map(|(_, file, read)| (file.clone(), *read));
-        let files = files.collect();
+    fn new(ctx: &Context, marked: Vec<(Option<Marks>, Watched)>) -> Self {
+        let files = marked.iter().map(|(_, file)| file.clone()).collect();
         let alive = Arc::new(());
         let is_wanted = Arc::downgrade(&alive);
         let has_change = move || {
             let mut marked = marked.iter();
             is_wanted.strong_count() == 0
-                || marked.any(|(marks, file, _)| marks_of_mesh(file) != *marks)
+                || marked.any(|(marks, (file, _))| marks_of_mesh(file) != *marks)
         };
         let ctx = ctx.clone();
         let wake = move || ctx.request_repaint();
