@@ -35,12 +35,13 @@ pub fn item(
     (item, is_alone): (Item, bool),
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
+    let (icon, name) = (icons::of_item(scene, item), item.name(scene)?);
+    title_field(ui, icon, item, name, out);
     match item.kind {
         ItemKind::Light => light(ui, scene, item.index, out),
         ItemKind::Object => object(ui, scene, (item.index, is_alone), out),
         ItemKind::Pack => {
             let (name, value) = scene.color_packs.get_index(item.index)?;
-            title_field(ui, icons::PACK, item, name, out);
             let chosen = pack(ui, item.index, value, out);
             if is_alone {
                 used_by(ui, scene, name, out);
@@ -58,7 +59,6 @@ fn light(
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
     let before = scene.lights.get(index)?;
-    title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
     let mut light = before.clone();
     let mut rows = FieldRows::new(ui);
     rows.vector(
@@ -178,13 +178,6 @@ fn object(
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
     let before = scene.objects.get(index)?;
-    title_field(
-        ui,
-        icons::of_shape(&before.shape),
-        Item::object(index),
-        &before.name,
-        out,
-    );
     let mut object = before.clone();
     let mut rows = FieldRows::new(ui);
     rows.heading(before.shape.kind());
