@@ -238,11 +238,6 @@ impl Outliner {
 
     fn lines<'a>(&self, scene: &Scene, groups: &'a Groups) -> Lines<'a> {
         let filter = self.filter.trim().to_lowercase();
-        let kinds = [
-            (ItemKind::Light, scene.lights.len()),
-            (ItemKind::Object, scene.objects.len()),
-            (ItemKind::Pack, scene.color_packs.len()),
-        ];
         let entries = |kind: ItemKind, count: usize| {
             if self.folded.contains(&kind) {
                 return Entries::All(0);
@@ -253,14 +248,11 @@ impl Outliner {
             if filter.is_empty() {
                 return Entries::All(count);
             }
-            let matches = |index: &usize| {
-                let item = Item {
-                    kind,
-                    index: *index,
-                };
+            let matches = |&index: &usize| {
+                let item = Item { kind, index };
                 let object = scene
                     .objects
-                    .get(*index)
+                    .get(index)
                     .filter(|_| kind == ItemKind::Object);
                 let group = object.map(|object| object.group.as_str());
                 let mut names = item.name(scene).into_iter().chain(group);
@@ -268,7 +260,11 @@ impl Outliner {
             };
             Entries::Filtered((0..count).filter(matches).collect())
         };
-        Lines(kinds.map(|(kind, count)| (kind, count, entries(kind, count))))
+        let kinds = [ItemKind::Light, ItemKind::Object, ItemKind::Pack];
+        Lines(kinds.map(|kind| {
+            let count = kind.count(scene);
+            (kind, count, entries(kind, count))
+        }))
     }
 
     fn title(
