@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
 
-use super::prompts::{Reply, question};
+use super::prompts::{Reply, question, reply_on};
 use super::theme::GRID;
 use crate::editor::{Editor, OwnFile};
 use crate::files::{Marks, Stamp, is_missing, time_of};
@@ -301,17 +301,11 @@ impl ExternalVersion {
                 ui.add_space(2.0 * GRID);
                 ui.horizontal(|ui| {
                     // Enter chooses none of them.
-                    if ui.button("Keep mine").clicked() {
-                        *answer = Reply::Yes;
-                    }
-                    let can_take = self.document.is_ok();
+                    reply_on(&ui.button("Keep mine"), Reply::Yes, answer);
                     let take = egui::Button::new("Take theirs");
-                    if ui.add_enabled(can_take, take).clicked() {
-                        *answer = Reply::No;
-                    }
-                    if ui.button("Save as…").clicked() {
-                        *answer = Reply::Other;
-                    }
+                    let take = ui.add_enabled(self.document.is_ok(), take);
+                    reply_on(&take, Reply::No, answer);
+                    reply_on(&ui.button("Save as…"), Reply::Other, answer);
                 });
             },
         )
