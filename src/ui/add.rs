@@ -160,13 +160,11 @@ fn in_front_of_camera(scene: &Scene) -> (DVec3, f64) {
         .next()
         .unwrap_or_else(|| place_in_front_of_hit(scene, framing.ray([0.0, 0.0]), usual));
     // Rounded where the thing is large enough: whole numbers read better in the inspector.
-    let round_if_large = |x: f64| if size > 10.0 { x.round() } else { x };
-    let at = DVec3::new(
-        round_if_large(at.x),
-        round_if_large(at.y),
-        round_if_large(at.z),
-    );
-    (at, round_if_large(size).max(MIN_SIZE))
+    if size > 10.0 {
+        (at.round(), size.round())
+    } else {
+        (at, size.max(MIN_SIZE))
+    }
 }
 
 /// Returns the place of a light that shines on `at` from above, no higher than the picture shows.

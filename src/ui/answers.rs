@@ -55,6 +55,8 @@ impl App {
         let document = self.editor.documents();
         if std::mem::replace(&mut self.shown_document, document) != document {
             self.why.close();
+            self.tools.rest();
+            self.timeline.fit();
             let is_about = |answer: &Answer| matches!(answer, Answer::Quality(..));
             self.answers.retain(|answer| !is_about(answer));
             if let Some(request) = self.lab.forget() {

@@ -381,11 +381,8 @@ impl eframe::App for App {
         out.actions.extend(motion.map(Action::Fly));
         let questions = std::mem::take(&mut out.questions);
         self.carry_out(&ctx, out, was_typing);
-        let running = if self.files.is_asking() {
-            self.exports.describe(&self.pictures)
-        } else {
-            None
-        };
+        let asked = self.files.is_asking().then_some(&self.exports);
+        let running = asked.and_then(|exports| exports.describe(&self.pictures));
         let outcome = self.files.show(ui, &mut self.editor, running.as_deref());
         self.act_on(&ctx, outcome);
         help::show(&ctx, &mut self.shortcuts_open);
@@ -405,7 +402,7 @@ impl eframe::App for App {
             || self.overlay.is_dragging(&ctx);
         let messages = std::mem::take(&mut self.editor.messages);
         self.toasts.push(&ctx, messages);
-        self.toasts.show(&ctx, place.rect, self.exports.place());
+        self.toasts.show(&ctx, place.rect, self.exports.window_rect);
         self.pictures
             .submit(&self.editor, place.pixels, self.layout.aspect);
         if let Some(jobs) = self.thumbs.jobs(&ctx, &self.editor, place.rect) {
@@ -414,15 +411,12 @@ impl eframe::App for App {
         // Asked after the live view was submitted: a question would keep it waiting.
         self.pictures.ask(&self.editor, questions);
         let is_settled = self.is_settled();
-        if let Some(screenshot) = &mut self.screenshot
-            && screenshot.tick(&ctx, is_settled)
-        {
-            self.closing = Some(self.editor.revision());
-        }
+        let mut screenshot = self.screenshot.iter_mut();
+        let is_taken = screenshot.any(|screenshot| screenshot.tick(&ctx, is_settled));
         let has_picture = self.pictures.shown(&self.editor).is_some();
-        if let Some(start) = &mut self.start
-            && start.tick(&ctx, has_picture)
-        {
+        let mut start = self.start.iter_mut();
+        let is_timed = start.any(|start| start.tick(&ctx, has_picture));
+        if is_taken || is_timed {
             self.closing = Some(self.editor.revision());
         }
     }

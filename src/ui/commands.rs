@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::dialogs::Ask;
 use super::layout::WindowPart;
 use crate::animate::{Preset, Retime};
-use crate::scene::Aspect;
+use crate::scene::{Aspect, Projection};
 
 /// Something the user asks of the window as a whole.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,14 +66,10 @@ pub enum Command {
     ActualSize,
     /// Abort the still picture.
     CancelStill,
-    /// Switch to perspective projection.
-    Perspective,
-    /// Switch to orthographic projection.
-    Orthographic,
-    /// Show the markers of lights.
-    MarkersOn,
-    /// Hide the markers of lights.
-    MarkersOff,
+    /// Switch to this projection.
+    Projection(Projection),
+    /// Show the markers of lights if true, else hide them.
+    Markers(bool),
     /// Leave the innermost mode or window, or deselect; with nothing left to leave, pressing it twice asks to quit.
     Escape,
     /// Play or pause.
@@ -212,10 +208,10 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     HighRes [plain(Key::H)] "High-res picture",
     Lab [ctrl(Key::L)] "Show or hide the lab",
     LowRes [plain(Key::L)] "Low-res live view (64 pixels)",
-    Orthographic [plain(Key::O), plain(Key::Num0)] "Orthographic projection",
-    Perspective [plain(Key::P)] "Perspective projection",
-    MarkersOff [plain(Key::U)] "Hide light markers",
-    MarkersOn [plain(Key::I), plain(Key::Num1)] "Show light markers",
+    Projection(Projection::Orthographic) [plain(Key::O), plain(Key::Num0)] "Orthographic projection",
+    Projection(Projection::Perspective) [plain(Key::P)] "Perspective projection",
+    Markers(false) [plain(Key::U)] "Hide light markers",
+    Markers(true) [plain(Key::I), plain(Key::Num1)] "Show light markers",
     FrameSelected [plain(Key::F)] "Frame selection",
     FrameAll [plain(Key::Home)] "Frame everything",
     ViewFront [ctrl(Key::Num1)] "View from the front",

@@ -67,17 +67,14 @@ impl Ask {
             // The name was typed in front of an ending that was there already.
             return path.with_extension("");
         }
-        match path.extension() {
-            Some(ending) if ending.is_empty() => path.with_extension(own_ending),
-            Some(ending)
-                if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own_ending) =>
-            {
-                path.as_mut_os_string().push(format!(".{own_ending}"));
-                path
-            }
-            Some(_) => path,
-            None => path.with_extension(own_ending),
+        let ending = path.extension().unwrap_or_default();
+        if ending.is_empty() {
+            return path.with_extension(own_ending);
         }
+        if *self == Self::SaveScene && !ending.eq_ignore_ascii_case(own_ending) {
+            path.as_mut_os_string().push(format!(".{own_ending}"));
+        }
+        path
     }
 
     /// Whether a file of this name will do: the ending of a picture or a camera path decides its format.

@@ -82,12 +82,8 @@ impl Files {
         });
     }
 
-    /// Writes the document to its file, or asks for a path if it has none.
-    pub fn save(&mut self, ctx: &Context, editor: &mut Editor) -> Option<FileOutcome> {
-        self.save_then(ctx, editor, None)
-    }
-
-    fn save_then(
+    /// Writes the document to its file, or asks for a path if it has none; `then` follows.
+    pub fn save(
         &mut self,
         ctx: &Context,
         editor: &mut Editor,
@@ -208,7 +204,7 @@ impl Files {
                 None
             }
             (Prompt::Unsaved(next) | Prompt::Saving(next), Reply::Yes) => {
-                self.save_then(&ctx, editor, Some(next))
+                self.save(&ctx, editor, Some(next))
             }
             (Prompt::Unsaved(next), Reply::No) => self.proceed(&ctx, editor, next),
             (Prompt::Quit, Reply::Yes) => Some(FileOutcome::Quit),
@@ -280,7 +276,7 @@ impl Files {
             return;
         };
         let is_gone = self.watch.note_gone(editor, &path);
-        let (is_changed, broken) = (self.watch.is_changed(&path), self.watch.take_broken());
+        let (is_changed, broken) = (self.watch.is_changed(&path), self.watch.broken.take());
         if let Some(why) = broken.filter(|_| !is_changed) {
             report_lost(editor, OwnFile::Broken, why);
         }
@@ -294,7 +290,10 @@ impl Files {
         let theirs = match Document::load_stamped(&path) {
             Ok(theirs) => theirs,
             Err(SceneError::Disk { .. }) => return self.watch.forget_modified(),
-            Err(error) => return self.watch.note_broken(error.to_string()),
+            Err(error) => {
+                self.watch.broken = Some(error.to_string());
+                return;
+            }
         };
         self.resolve_external_change(editor, Ok(theirs), None);
     }
@@ -333,7 +332,7 @@ impl Files {
         match answer {
             Reply::Yes => {
                 theirs.reject(editor);
-                return request.and_then(|_| self.save_then(ctx, editor, then));
+                return request.and_then(|_| self.save(ctx, editor, then));
             }
             Reply::No => {
                 theirs.accept(editor);
@@ -368,7 +367,7 @@ impl Files {
     /// window stays usable.
     pub fn open(&mut self, ctx: &Context, editor: &mut Editor, path: &Path) {
         // A new scene replaces one that is being read; meshes for this document go on if the document does.
-        self.reading.retain(|reading| !reading.is_scene());
+        self.reading.retain(|reading| !reading.is_scene);
         self.reading.push_front(Reading::scene(editor, path));
         self.take_finished_read(ctx, editor, MAX_BLOCKING);
     }
@@ -385,11 +384,8 @@ impl Files {
     }
 
     fn take_finished_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
-        let first = if self.is_free() {
-            self.reading.front_mut()
-        } else {
-            None
-        };
+        let is_free = self.is_free();
+        let first = self.reading.front_mut().filter(|_| is_free);
         let Some(read) = first.and_then(|reading| reading.wait(wait)) else {
             return;
         };

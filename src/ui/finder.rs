@@ -66,12 +66,6 @@ enum Target {
     Addition(Addition),
 }
 
-impl Target {
-    fn is_command(&self, command: &Command) -> bool {
-        matches!(self, Self::Command(found) if found == command)
-    }
-}
-
 /// Other names of commands in menus and buttons, or other words for them, in lower case.
 const ALIASES: [(Command, &str); 24] = [
     (Command::Ask(Ask::SaveScene), "save as"),
@@ -254,16 +248,17 @@ fn commands<'a>(
 
 /// Returns the other names of a match.
 fn aliases_of(entry: &Match) -> &'static str {
-    let commands = ALIASES
-        .iter()
-        .filter(|(command, _)| entry.target.is_command(command));
-    let additions = ADDITION_ALIASES
-        .iter()
-        .filter(|(name, _)| entry.name == *name);
-    let mut words = commands
-        .map(|(_, words)| *words)
-        .chain(additions.map(|(_, words)| *words));
-    words.next().unwrap_or_default()
+    let words = match &entry.target {
+        Target::Command(own) => {
+            let mut aliases = ALIASES.iter();
+            aliases.find_map(|(command, words)| (command == own).then_some(*words))
+        }
+        Target::Addition(_) | Target::Selection(_) => {
+            let mut aliases = ADDITION_ALIASES.iter();
+            aliases.find_map(|(name, words)| (entry.name == *name).then_some(*words))
+        }
+    };
+    words.unwrap_or_default()
 }
 
 /// Yields the entries of the menu *Add*.
@@ -276,18 +271,24 @@ fn choices<'a>(
     editor: &'a Editor,
     recent: &'a [PathBuf],
 ) -> impl Iterator<Item = (Command, String, String)> + 'a {
-    let shown = Aspect::EACH.map(|(aspect, name, _)| {
-        let name = format!("Show: {}", name.to_lowercase());
-        (Command::Aspect(aspect), name)
+    let shown = Aspect::EACH.map(|(aspect, name, _)| ("Show", name, Command::Aspect(aspect)));
+    let presets = Preset::ALL.map(|preset| {
+        let name = preset.words().0;
+        ("Ready-made flight", name, Command::Preset(preset))
     });
-    let panels = WindowPart::PANELS.map(|(part, name)| {
-        let name = format!("Show or hide panel: {}", name.to_lowercase());
-        (Command::Part(part), name)
-    });
-    let parts = WindowPart::OVER_PICTURE.map(|(part, name)| {
-        let name = format!("Show or hide: {}", name.to_lowercase());
-        (Command::Part(part), name)
-    });
+    let timings = Retime::ALL.map(|timing| ("Retime", timing.words().0, Command::Retime(timing)));
+    let panels =
+        WindowPart::PANELS.map(|(part, name)| ("Show or hide panel", name, Command::Part(part)));
+    let parts =
+        WindowPart::OVER_PICTURE.map(|(part, name)| ("Show or hide", name, Command::Part(part)));
+    let fixed = shown
+        .into_iter()
+        .chain(presets)
+        .chain(timings)
+        .chain(panels)
+        .chain(parts);
+    let fixed =
+        fixed.map(|(verb, name, command)| (command, format!("{verb}: {}", name.to_lowercase())));
     let examples = EXAMPLES.iter().enumerate().map(|(index, example)| {
         (
             Command::Leave(Next::Example(index)),
@@ -301,22 +302,7 @@ fn choices<'a>(
             format!("Go to bookmark: {}", bookmark.name),
         )
     });
-    let presets = Preset::ALL.map(|preset| {
-        let name = format!("Ready-made flight: {}", preset.words().0.to_lowercase());
-        (Command::Preset(preset), name)
-    });
-    let timings = Retime::ALL.map(|timing| {
-        let name = format!("Retime: {}", timing.words().0.to_lowercase());
-        (Command::Retime(timing), name)
-    });
-    let all = shown
-        .into_iter()
-        .chain(presets)
-        .chain(timings)
-        .chain(panels)
-        .chain(parts)
-        .chain(examples)
-        .chain(bookmarks);
+    let all = fixed.chain(examples).chain(bookmarks);
     let all = all.map(|(command, name)| (command, name, String::new()));
     let recent = recent.iter().map(|path| {
         let name = path.file_name().unwrap_or(path.as_os_str());
@@ -377,13 +363,8 @@ fn scene_items<'a>(
 ) -> impl Iterator<Item = Match> + 'a {
     let scene = editor.scene();
     let lights = (0..scene.lights.len()).map(|index| (Item::light(index), "light"));
-    let objects = (0..scene.objects.len()).map(|index| {
-        let kind = scene
-            .objects
-            .get(index)
-            .map_or("", |object| object.shape.kind());
-        (Item::object(index), kind)
-    });
+    let objects = scene.objects.iter().enumerate();
+    let objects = objects.map(|(index, object)| (Item::object(index), object.shape.kind()));
     let packs = (0..scene.color_packs.len()).map(|index| (Item::pack(index), "color pack"));
     let all = lights.chain(objects).chain(packs);
     let all = all.map(|(item, kind)| (item.name(scene).unwrap_or_default(), kind, Some(item)));

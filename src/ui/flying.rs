@@ -115,11 +115,9 @@ impl Flying {
             Motion::default()
         };
         self.keys_fly = held != Motion::default();
-        if self.keys_fly {
-            ui.request_repaint();
-        }
         let mut motion = Motion::default();
         if self.keys_fly {
+            ui.request_repaint();
             let fast = if ui.input(|input| input.modifiers.shift) {
                 SHIFT_FACTOR
             } else {

@@ -12,28 +12,30 @@ use crate::export::{JobFiles, Pattern, Sequence, povray_text, write_job, write_t
 use crate::files::{has_ending, is_same_file};
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
-use crate::scene::{Animation, Camera, MAX_BYTES, Scene, around, check, read_text};
+use crate::scene::{Animation, Camera, Key, MAX_BYTES, Scene, around, check, read_text};
 use crate::words::{counted, for_shell};
 
 /// Factor between the sizes of a mesh and of the scene from which on the size is reported.
 const ODD_SIZE_FACTOR: f64 = 20.0;
 
-/// Replaces the camera's keys by those of a file.
-pub fn import_path(editor: &mut Editor, path: &Path) {
-    let text = match read_text(path) {
-        Ok(text) => text,
-        Err(error) => return editor.report_error_in(Ask::ImportPath.title(), error.to_string()),
-    };
+/// Reads the keys of a file; values that a table leaves out are those of `camera`.
+fn read_path(path: &Path, camera: &Camera) -> Result<Vec<Key<Camera>>, String> {
+    let text = read_text(path).map_err(|error| error.to_string())?;
     let keys = if is_table(path) {
-        from_table(&text, &editor.shown().camera)
+        from_table(&text, camera)
     } else {
         from_text(&text)
     };
-    match keys {
-        Ok(keys) if keys.is_empty() => {
-            let why = format!("{}: the file contains no keys", path.display());
-            editor.report_error_in(Ask::ImportPath.title(), why);
-        }
+    let keys = keys.map_err(|error| format!("{}: {error}", path.display()))?;
+    if keys.is_empty() {
+        return Err(format!("{}: the file contains no keys", path.display()));
+    }
+    Ok(keys)
+}
+
+/// Replaces the camera's keys by those of a file.
+pub fn import_path(editor: &mut Editor, path: &Path) {
+    match read_path(path, &editor.shown().camera) {
         Ok(keys) if keys == editor.scene().animation.keys => {
             let keys = counted(keys.len(), "key");
             editor.notify(format!(
@@ -56,12 +58,7 @@ pub fn import_path(editor: &mut Editor, path: &Path) {
                 editor.notify_of_step(format!("{keys} from {}{replaced}", path.display()));
             }
         }
-        Err(error) => {
-            editor.report_error_in(
-                Ask::ImportPath.title(),
-                format!("{}: {error}", path.display()),
-            );
-        }
+        Err(why) => editor.report_error_in(Ask::ImportPath.title(), why),
     }
 }
 

@@ -13,7 +13,7 @@ use super::flying::{MAX_FACTOR, MIN_FACTOR};
 use super::hint::Hinted as _;
 use super::icons;
 use super::layout::{Below, Layout, WindowPart};
-use super::menu_entry::{ITEM_COMMANDS, entry, offer, ticked};
+use super::menu_entry::{ITEM_COMMANDS, entry, offer, on_click, ticked};
 use super::number::{Field, drag_unlabelled};
 use super::obstacles::is_enabled;
 use super::requests::UiRequests;
@@ -67,9 +67,9 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
                     .file_name()
                     .unwrap_or(path.as_os_str())
                     .to_string_lossy();
-                if ui.button(name).hint(path.display().to_string()).clicked() {
-                    out.commands.push(Command::Leave(Next::Open(path.clone())));
-                }
+                let (button, hint) = (ui.button(name), path.display().to_string());
+                let open = Command::Leave(Next::Open(path.clone()));
+                on_click(ui, button, (&hint, open), out);
             }
         });
     });
@@ -127,34 +127,24 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
     mode_entries(ui, editor, out);
     ui.separator();
     let projection = editor.shown().camera.projection;
-    for (kind, command) in [
-        (Projection::Perspective, Command::Perspective),
-        (Projection::Orthographic, Command::Orthographic),
-    ] {
-        let name = format!("{kind:?}");
-        if ticked(ui, projection == kind, &name, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+    for kind in [Projection::Perspective, Projection::Orthographic] {
+        let command = Command::Projection(kind);
+        ticked(ui, projection == kind, &format!("{kind:?}"), command, out);
     }
     ui.separator();
     entry(ui, "Frame selection", Command::FrameSelected, out);
     entry(ui, "Frame everything", Command::FrameAll, out);
     ui.menu_button("Look from", |ui| {
-        for (text, command) in [
-            ("The front", Command::ViewFront),
-            ("The right", Command::ViewRight),
-            ("Above", Command::ViewTop),
-        ] {
-            entry(ui, text, command, out);
-        }
+        entry(ui, "The front", Command::ViewFront, out);
+        entry(ui, "The right", Command::ViewRight, out);
+        entry(ui, "Above", Command::ViewTop, out);
     });
     ui.menu_button("Bookmarked views", |ui| bookmark_entries(ui, editor, out));
     ui.separator();
     ui.menu_button("Show", |ui| {
         for (aspect, name, hint) in Aspect::EACH {
-            if ui.radio(layout.aspect == aspect, name).hint(hint).clicked() {
-                out.commands.push(Command::Aspect(aspect));
-            }
+            let radio = ui.radio(layout.aspect == aspect, name);
+            on_click(ui, radio, (hint, Command::Aspect(aspect)), out);
         }
     });
     ui.menu_button("Panels", |ui| panel_entries(ui, layout, out));
@@ -175,13 +165,9 @@ fn view_menu(ui: &mut Ui, editor: &Editor, layout: &mut Layout, out: &mut UiRequ
             drag_unlabelled(ui, &field, &mut layout.fly_speed);
         });
     ui.menu_button("Text and buttons", |ui| {
-        for (text, zoom) in [
-            ("Larger", Zoom::In),
-            ("Smaller", Zoom::Out),
-            ("Default size", Zoom::Default),
-        ] {
-            entry(ui, text, Command::Zoom(zoom), out);
-        }
+        entry(ui, "Larger", Command::Zoom(Zoom::In), out);
+        entry(ui, "Smaller", Command::Zoom(Zoom::Out), out);
+        entry(ui, "Default size", Command::Zoom(Zoom::Default), out);
     });
     ui.separator();
     theme_choice(ui, out);
@@ -194,9 +180,7 @@ fn part_entries(
     out: &mut UiRequests,
 ) {
     for &(part, name) in parts {
-        if ticked(ui, *layout.part(part), name, None).clicked() {
-            out.commands.push(Command::Part(part));
-        }
+        ticked(ui, *layout.part(part), name, Command::Part(part), out);
     }
 }
 
@@ -211,30 +195,21 @@ fn panel_entries(ui: &mut Ui, layout: &mut Layout, out: &mut UiRequests) {
         (layout.below == Below::Lab, "Lab", Command::Lab),
         (layout.is_alone, "Picture only", Command::PictureAlone),
     ] {
-        if ticked(ui, is_on, name, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+        ticked(ui, is_on, name, command, out);
     }
 }
 
 fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    for (text, command) in [
-        ("Play or pause", Command::Play),
-        ("Record flight", Command::Record),
-        ("Stop recording", Command::StopRecording),
-    ] {
-        offer(ui, editor, text, command, out);
-    }
+    let mut offered = |ui: &mut Ui, text, command| offer(ui, editor, text, command, out);
+    offered(ui, "Play or pause", Command::Play);
+    offered(ui, "Record flight", Command::Record);
+    offered(ui, "Stop recording", Command::StopRecording);
     ui.separator();
-    for (text, command) in [
-        ("Add key", Command::AddKey),
-        ("Select all keys", Command::SelectKeys),
-        ("Previous key", Command::PreviousKey),
-        ("Next key", Command::NextKey),
-        ("Look through the shot", Command::LookThrough),
-    ] {
-        offer(ui, editor, text, command, out);
-    }
+    offered(ui, "Add key", Command::AddKey);
+    offered(ui, "Select all keys", Command::SelectKeys);
+    offered(ui, "Previous key", Command::PreviousKey);
+    offered(ui, "Next key", Command::NextKey);
+    offered(ui, "Look through the shot", Command::LookThrough);
     ui.separator();
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
     let can_retime = is_enabled(&Command::Retime(Retime::Smooth), editor);
@@ -256,27 +231,23 @@ fn preset_entries(ui: &mut Ui, out: &mut UiRequests) {
     for preset in Preset::ALL {
         let (name, hint) = preset.words();
         let hint = format!("{hint}. Replaces the camera's keys");
-        if ui.button(name).hint(hint).clicked() {
-            out.commands.push(Command::Preset(preset));
-        }
+        let button = ui.button(name);
+        on_click(ui, button, (&hint, Command::Preset(preset)), out);
     }
 }
 
 fn retime_entries(ui: &mut Ui, out: &mut UiRequests) {
     for retime in Retime::ALL {
         let (name, hint) = retime.words();
-        if ui.button(name).hint(hint).clicked() {
-            out.commands.push(Command::Retime(retime));
-        }
+        let button = ui.button(name);
+        on_click(ui, button, (hint, Command::Retime(retime)), out);
     }
 }
 
 fn theme_choice(ui: &mut Ui, out: &mut UiRequests) {
     let shown = ui.ctx().theme();
     for (theme, name) in [(Theme::Dark, "Dark theme"), (Theme::Light, "Light theme")] {
-        if ticked(ui, shown == theme, name, None).clicked() {
-            out.commands.push(Command::Theme(theme));
-        }
+        ticked(ui, shown == theme, name, Command::Theme(theme), out);
     }
 }
 
@@ -286,65 +257,52 @@ fn mode_entries(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         (Mode::LowRes, "Low-res (64 pixels)", Command::LowRes),
         (Mode::HighRes, "High-res picture", Command::HighRes),
     ] {
-        if ticked(ui, editor.mode == mode, text, Some(&command)).clicked() {
-            out.commands.push(command);
-        }
+        ticked(ui, editor.mode == mode, text, command, out);
     }
 }
 
 /// Shows the switches from right to left: lights, projection, picture, live view.
 fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let scene = editor.scene();
-    let markers = scene.light_visualization;
-    let hint = "Show light markers (I on, U off)";
-    if bar_switch(
-        ui,
-        markers,
-        (icons::text(icons::LIGHT), "Lights"),
-        "Lights",
-        hint,
-    ) {
-        out.commands.push(if markers {
-            Command::MarkersOff
-        } else {
-            Command::MarkersOn
-        });
-    }
-    let is_perspective = editor.shown().camera.projection == Projection::Perspective;
-    let name = if is_perspective {
-        "Perspective"
-    } else {
-        "Orthographic"
-    };
-    let hint = "Projection (P perspective, O orthographic); click to change";
-    if bar_switch(
-        ui,
-        false,
-        (icons::text(icons::CAMERA), name),
-        "Projection",
-        hint,
-    ) {
-        let other = if is_perspective {
-            Command::Orthographic
-        } else {
-            Command::Perspective
-        };
-        out.commands.push(other);
-    }
+    let markers = editor.scene().light_visualization;
     let is_still = editor.mode == Mode::HighRes;
-    let hint = "Trace the picture at full resolution (H); Esc returns to the live view";
-    if bar_switch(
-        ui,
-        is_still,
-        (icons::text(icons::IMAGE), "High-res"),
-        "High-res",
-        hint,
-    ) {
-        out.commands.push(if is_still {
-            Command::Live
-        } else {
-            Command::HighRes
-        });
+    let (projection, other) = match editor.shown().camera.projection {
+        Projection::Perspective => ("Perspective", Projection::Orthographic),
+        Projection::Orthographic => ("Orthographic", Projection::Perspective),
+    };
+    for (is_on, icon, text, name, hint, command) in [
+        (
+            markers,
+            icons::LIGHT,
+            "Lights",
+            "Lights",
+            "Show light markers (I on, U off)",
+            Command::Markers(!markers),
+        ),
+        (
+            false,
+            icons::CAMERA,
+            projection,
+            "Projection",
+            "Projection (P perspective, O orthographic); click to change",
+            Command::Projection(other),
+        ),
+        (
+            is_still,
+            icons::IMAGE,
+            "High-res",
+            "High-res",
+            "Trace the picture at full resolution (H); Esc returns to the live view",
+            if is_still {
+                Command::Live
+            } else {
+                Command::HighRes
+            },
+        ),
+    ] {
+        let switch = ui.add(Button::selectable(is_on, (icons::text(icon), text)));
+        if switch.accessible_name(name).hint(hint).clicked() {
+            out.commands.push(command);
+        }
     }
     let name = if editor.mode == Mode::LowRes {
         "Low-res"
@@ -359,17 +317,4 @@ fn switches(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         .accessible_name("Picture mode")
         .hint("What the picture area shows");
     egui::Popup::menu(&live).show(|ui| mode_entries(ui, editor, out));
-}
-
-fn bar_switch<'a>(
-    ui: &mut Ui,
-    on: bool,
-    text: impl egui::IntoAtoms<'a>,
-    name: &str,
-    hint: &str,
-) -> bool {
-    ui.add(Button::selectable(on, text))
-        .accessible_name(name)
-        .hint(hint)
-        .clicked()
 }

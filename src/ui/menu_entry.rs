@@ -1,8 +1,9 @@
-//! A menu entry, and the entries that several menus share.
+//! Widgets that request a command: menu entries, those that several menus share, and others.
 
 use egui::{Button, Color32, Response, Role, Ui, WidgetInfo};
 
-use super::commands::{Command, first_key};
+use super::commands::{Command, first_key, with_key};
+use super::hint::Hinted as _;
 use super::icons;
 use super::obstacles::obstacle;
 use super::requests::UiRequests;
@@ -27,9 +28,9 @@ pub const ITEM_COMMANDS: [(&str, Command); 14] = [
     ("Delete", Command::Delete),
 ];
 
-/// Adds a menu entry with its key. Returns whether it was chosen.
-pub fn entry(ui: &mut Ui, text: &str, command: Command, out: &mut UiRequests) -> bool {
-    add(ui, (text, None), command, out)
+/// Adds a menu entry with its key.
+pub fn entry(ui: &mut Ui, text: &str, command: Command, out: &mut UiRequests) {
+    add(ui, (text, None), command, out);
 }
 
 /// Adds a menu entry that is enabled only if the command would do something now.
@@ -43,7 +44,7 @@ fn add(
     (text, obstacle): (&str, Option<&str>),
     command: Command,
     out: &mut UiRequests,
-) -> bool {
+) {
     let key = first_key(ui, &command).unwrap_or_default();
     let button = Button::new(text).shortcut_text(key);
     let entry = ui.add_enabled(obstacle.is_none(), button);
@@ -52,25 +53,37 @@ fn add(
         Some(why) => entry.on_disabled_hover_text(capitalised(why)),
         None => entry,
     };
-    let is_chosen = entry.clicked();
-    if is_chosen {
+    if entry.clicked() {
         out.commands.push(command);
     }
-    is_chosen
 }
 
-/// Adds a menu entry that can be on or off, with a tick in front if it is on.
-pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Option<&Command>) -> Response {
-    let key = command.and_then(|command| first_key(ui, command));
+/// Explains a widget with these words and the key of a command, which a click on the widget requests.
+pub fn on_click(
+    ui: &Ui,
+    widget: Response,
+    (words, command): (&str, Command),
+    out: &mut UiRequests,
+) {
+    if widget.hint(with_key(ui, words, &command)).clicked() {
+        out.commands.push(command);
+    }
+}
+
+/// Adds a menu entry with its key that can be on or off, with a tick in front if it is on.
+pub fn ticked(ui: &mut Ui, is_on: bool, text: &str, command: Command, out: &mut UiRequests) {
+    let key = first_key(ui, &command).unwrap_or_default();
     let tick = icons::text(icons::CHECK);
     let tick = if is_on {
         tick
     } else {
         tick.color(Color32::TRANSPARENT)
     };
-    let button = Button::new((tick, text)).shortcut_text(key.unwrap_or_default());
+    let button = Button::new((tick, text)).shortcut_text(key);
     let entry = ui.add(button).accessible_name(text);
     let role = Role::CheckBox;
     entry.widget_info(|| WidgetInfo::selected(role, true, is_on, text));
-    entry
+    if entry.clicked() {
+        out.commands.push(command);
+    }
 }

@@ -4,8 +4,8 @@ use crate::editor::{Action, Arrangement, Edit, Editor, Item, ItemKind, Selection
 use crate::scene::Scene;
 use crate::words::counted;
 
-/// Hides everything that is selected, or shows it if all of it is hidden.
-pub fn toggle_visible(editor: &mut Editor) {
+/// Returns the edit that hides everything that is selected, or shows it if all of it is hidden.
+pub fn toggle_visible(editor: &Editor) -> Edit {
     let scene = editor.shown();
     let items = editor.selection().items();
     let mut visible = items.iter().filter_map(|item| item.is_visible(scene));
@@ -18,7 +18,7 @@ pub fn toggle_visible(editor: &mut Editor) {
         [item] => item.name(scene).unwrap_or_default().to_owned(),
         _ => counted(edits.len(), "item"),
     };
-    editor.apply(Action::Edit(Edit::Each(edits, format!("{verb} {name}"))));
+    Edit::Each(edits, format!("{verb} {name}"))
 }
 
 /// Returns the selected objects or, if only a triangle is selected, all triangles connected to it by shared corners.
@@ -41,14 +41,13 @@ pub fn with_same_pack(scene: &Scene, selected: &Selection) -> Selection {
     Selection::all(others.chain(selected.items().iter().copied()))
 }
 
-/// Deletes everything that is selected.
-pub fn delete(editor: &mut Editor) {
-    let edit = match editor.selection() {
-        Selection::Keys(keys) => Edit::delete_keys(&editor.scene().animation, keys),
-        Selection::Items(items) => Edit::Delete(items.clone()),
-        Selection::Camera | Selection::World | Selection::Render => return,
-    };
-    editor.apply(Action::Edit(edit));
+/// Returns the edit that deletes everything that is selected.
+pub fn delete(editor: &Editor) -> Option<Edit> {
+    match editor.selection() {
+        Selection::Keys(keys) => Some(Edit::delete_keys(&editor.scene().animation, keys)),
+        Selection::Items(items) => Some(Edit::Delete(items.clone())),
+        Selection::Camera | Selection::World | Selection::Render => None,
+    }
 }
 
 /// Duplicates each of several selected items.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{Context, Ui};
 
-use super::prompts::{Reply, question};
+use super::prompts::{Reply, question, reply_on};
 use super::theme::GRID;
 use crate::editor::{Editor, OwnFile};
 use crate::files::{Marks, Stamp, is_missing, time_of};
@@ -32,14 +32,14 @@ pub struct Watch {
     remaining_checks: u32,
     /// The watched files, the open one last.
     watched: Vec<Watched>,
-    /// Their marks at the last check.
-    last_marks: Vec<Marked>,
+    /// The same files, with their marks at the last check.
+    last_marks: Vec<(Option<Marks>, Watched)>,
     /// Thread that watches while nothing changes, since a resting window draws no frames.
     guard: Option<Guard>,
     /// Path of the open file and time of its last known change.
     last_modified: Option<(PathBuf, SystemTime)>,
     /// Why it could not be read. Reported only if the file is the same at the next check, since it may be half written.
-    broken: Option<String>,
+    pub broken: Option<String>,
     /// File that was missing at the last check.
     missing: Option<PathBuf>,
     /// Objects at the last check, and their mesh files.
@@ -79,10 +79,8 @@ impl Watch {
         if is_due {
             self.last_check = Some(Instant::now());
             self.remaining_checks = self.remaining_checks.saturating_sub(1);
-            let marked = self.watched.iter();
-            self.last_marks = marked
-                .map(|(file, read)| (marks_of_mesh(file), file.clone(), *read))
-                .collect();
+            let files = self.watched.iter().cloned();
+            self.last_marks = files.map(|file| (marks_of_mesh(&file.0), file)).collect();
         } else if self.remaining_checks == 0 {
             self.guard = Some(Guard::new(ctx, std::mem::take(&mut self.last_marks)));
             return false;
@@ -187,16 +185,6 @@ impl Watch {
     pub fn forget_modified(&mut self) {
         self.last_modified = None;
     }
-
-    /// Notes why the file could not be read.
-    pub fn note_broken(&mut self, why: String) {
-        self.broken = Some(why);
-    }
-
-    /// Takes the reason why the file could not be read at the previous check.
-    pub fn take_broken(&mut self) -> Option<String> {
-        self.broken.take()
-    }
 }
 
 /// Reports why the content of the document now exists only in the window.
@@ -222,8 +210,6 @@ struct WatchedMesh {
 
 /// A file, and its marks when its mesh was read.
 type Watched = (PathBuf, Option<Marks>);
-/// The current marks of a file, its path, and its marks when its mesh was read.
-type Marked = (Option<Marks>, PathBuf, Option<Marks>);
 
 impl WatchedMesh {
     fn full_path(&self) -> PathBuf {
@@ -241,15 +227,14 @@ struct Guard {
 }
 
 impl Guard {
-    fn new(ctx: &Context, marked: Vec<Marked>) -> Self {
-        let files = marked.iter().map(|(_, file, read)| (file.clone(), *read));
-        let files = files.collect();
+    fn new(ctx: &Context, marked: Vec<(Option<Marks>, Watched)>) -> Self {
+        let files = marked.iter().map(|(_, file)| file.clone()).collect();
         let alive = Arc::new(());
         let is_wanted = Arc::downgrade(&alive);
         let has_change = move || {
             let mut marked = marked.iter();
             is_wanted.strong_count() == 0
-                || marked.any(|(marks, file, _)| marks_of_mesh(file) != *marks)
+                || marked.any(|(marks, (file, _))| marks_of_mesh(file) != *marks)
         };
         let ctx = ctx.clone();
         let wake = move || ctx.request_repaint();
@@ -316,17 +301,11 @@ impl ExternalVersion {
                 ui.add_space(2.0 * GRID);
                 ui.horizontal(|ui| {
                     // Enter chooses none of them.
-                    if ui.button("Keep mine").clicked() {
-                        *answer = Reply::Yes;
-                    }
-                    let can_take = self.document.is_ok();
+                    reply_on(&ui.button("Keep mine"), Reply::Yes, answer);
                     let take = egui::Button::new("Take theirs");
-                    if ui.add_enabled(can_take, take).clicked() {
-                        *answer = Reply::No;
-                    }
-                    if ui.button("Save as…").clicked() {
-                        *answer = Reply::Other;
-                    }
+                    let take = ui.add_enabled(self.document.is_ok(), take);
+                    reply_on(&take, Reply::No, answer);
+                    reply_on(&ui.button("Save as…"), Reply::Other, answer);
                 });
             },
         )

@@ -18,11 +18,10 @@ pub fn assign_pack_edit(editor: &Editor, pack: Item, item: Item) -> Option<Edit>
     let scene = editor.shown();
     let name = pack.name(scene)?;
     let selected = editor.selection();
-    let one = [item];
     let items = if selected.has(item) {
         selected.items()
     } else {
-        &one
+        std::slice::from_ref(&item)
     };
     let wearers = items.iter().filter(|item| item.color_pack(scene).is_some());
     let edits = wearers.filter_map(|item| {

@@ -135,12 +135,7 @@ impl Pictures {
             self.worker.ask(QueryJob { scene, question });
         }
         let wanted = editor.wanted_survey();
-        let is_asked = match (wanted, &self.surveyed) {
-            (Some(wanted), Some(asked)) => Arc::ptr_eq(wanted, asked),
-            (None, None) => true,
-            _ => false,
-        };
-        if is_asked {
+        if wanted.map(Arc::as_ptr) == self.surveyed.as_ref().map(Arc::as_ptr) {
             return;
         }
         self.surveyed = wanted.cloned();

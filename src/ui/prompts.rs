@@ -4,7 +4,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Event, Frame, Id, InputState, Key, Modal, RichText, TextEdit, Ui};
+use egui::{
+    Button, Context, Event, Frame, Id, InputState, Key, Modal, Response, RichText, TextEdit, Ui,
+};
 
 use super::commands::Next;
 use super::dialogs::Ask;
@@ -46,15 +48,9 @@ pub fn ask_about_changes(ctx: &Context, title: &str, next: &Next, exports: Optio
         show_running_exports(ui, exports);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            if primary_button(ui, "Save changes").clicked() {
-                *answer = Reply::Yes;
-            }
-            if ui.button("Don't save").clicked() {
-                *answer = Reply::No;
-            }
-            if ui.button("Keep editing").clicked() {
-                *answer = Reply::Cancel;
-            }
+            reply_on(&primary_button(ui, "Save changes"), Reply::Yes, answer);
+            reply_on(&ui.button("Don't save"), Reply::No, answer);
+            reply_on(&ui.button("Keep editing"), Reply::Cancel, answer);
         });
     })
 }
@@ -71,12 +67,8 @@ pub fn ask_to_quit(ctx: &Context, exports: Option<&str>) -> Reply {
         show_running_exports(ui, exports);
         ui.add_space(2.0 * GRID);
         ui.horizontal(|ui| {
-            if primary_button(ui, "Stay").clicked() {
-                *answer = Reply::Cancel;
-            }
-            if ui.button("Quit now").clicked() {
-                *answer = Reply::Yes;
-            }
+            reply_on(&primary_button(ui, "Stay"), Reply::Cancel, answer);
+            reply_on(&ui.button("Quit now"), Reply::Yes, answer);
         });
     })
 }
@@ -193,9 +185,7 @@ impl PathPrompt {
                         .err()
                         .map(|error| format!("{}: {error}", folder.display()));
                 }
-                if ui.button("Cancel").clicked() {
-                    *answer = Reply::Cancel;
-                }
+                reply_on(&ui.button("Cancel"), Reply::Cancel, answer);
             });
         })
     }
@@ -241,21 +231,14 @@ impl PathPrompt {
 
     fn warning(&self) -> Option<Warning> {
         let path = self.path();
-        let impossible = |words: String| {
-            Some(Warning {
-                words,
-                is_possible: false,
-            })
-        };
+        let warning = |words, is_possible| Some(Warning { words, is_possible });
+        let impossible = |words: String| warning(words, false);
         if let Some(words) = self.problem.clone() {
             return impossible(words);
         }
         if let Some(words) = self.refused.clone() {
             // The operation may succeed now.
-            return Some(Warning {
-                words,
-                is_possible: true,
-            });
+            return warning(words, true);
         }
         if let Some(file) = self.file_in_the_way() {
             return impossible(format!("{} is a file, not a folder", file.display()));
@@ -286,10 +269,7 @@ impl PathPrompt {
             } else {
                 format!("Replaces {}", path.display())
             };
-            return Some(Warning {
-                words,
-                is_possible: true,
-            });
+            return warning(words, true);
         }
         if !self.ask.writes() && !takes_folder && !path.is_file() {
             let path = shortened(&path.to_string_lossy(), LONGEST_PATH);
@@ -371,8 +351,15 @@ pub fn question(
     answer
 }
 
+/// Gives this reply if a button is clicked.
+pub fn reply_on(button: &Response, reply: Reply, answer: &mut Reply) {
+    if button.clicked() {
+        *answer = reply;
+    }
+}
+
 /// Shows the primary button.
-pub fn primary_button(ui: &mut Ui, text: &str) -> egui::Response {
+pub fn primary_button(ui: &mut Ui, text: &str) -> Response {
     let colors = palette(ui.ctx());
     ui.add(Button::new(RichText::new(text).color(colors.on_accent)).fill(colors.accent))
 }

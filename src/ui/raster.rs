@@ -10,14 +10,12 @@ use crate::image::Image;
 
 /// Number of frames that layouts take to settle.
 const FRAMES: usize = 4;
+/// Pixels per point.
+pub const SCALE: u32 = 2;
 
-/// Draws what `show` puts into a window of `width × height` points, each of them `scale` pixels wide.
-pub fn draw(
-    (width, height): (u32, u32),
-    scale: f32,
-    theme: Theme,
-    mut show: impl FnMut(&mut Ui),
-) -> Image {
+/// Draws what `show` puts into a window of `width × height` points, each of them [`SCALE`] pixels wide.
+pub fn draw((width, height): (u32, u32), theme: Theme, mut show: impl FnMut(&mut Ui)) -> Image {
+    let scale = SCALE as f32;
     let ctx = Context::default();
     install(&ctx, theme);
     let size = vec2(width as f32, height as f32);

@@ -27,7 +27,8 @@ pub struct Reading {
     /// Path of the file.
     pub path: PathBuf,
     answer: Background<ReadOutcome>,
-    is_scene: bool,
+    /// Whether what is read replaces the document.
+    pub is_scene: bool,
     since: Instant,
     /// The scene when reading began, and the number of its document, see [`Editor::documents`].
     initial_scene: Arc<Scene>,
@@ -42,11 +43,6 @@ impl Reading {
             is_scene: true,
             ..Self::start(editor, path, read)
         }
-    }
-
-    /// Whether what is read replaces the document.
-    pub fn is_scene(&self) -> bool {
-        self.is_scene
     }
 
     /// Starts to read a mesh file.
@@ -113,7 +109,7 @@ impl Reading {
     }
 
     /// The name of the file.
-    pub fn name(&self) -> String {
+    fn name(&self) -> String {
         let name = self.path.file_name().unwrap_or_default();
         name.to_string_lossy().into_owned()
     }

@@ -18,7 +18,7 @@ use super::on_selected::{
 use super::put_down::put_down;
 use super::requests::UiRequests;
 use super::timeline::actions;
-use super::tools::{axis_camera, framing_camera, is_selection_out_of_view, projected_camera};
+use super::tools::{framing_camera, is_selection_out_of_view, looking_along, projected};
 use crate::editor::{
     Action, Edit, Editor, Item, ItemKind, Mode, Selection, Time, excerpt, free_bookmark_name,
     free_group_name, read,
@@ -107,7 +107,7 @@ impl App {
             // Nothing happens before the user answers.
             Command::Ask(ask) => self.files.ask(ctx, &mut self.editor, ask),
             Command::Save => {
-                let outcome = self.files.save(ctx, &mut self.editor);
+                let outcome = self.files.save(ctx, &mut self.editor, None);
                 self.act_on(ctx, outcome);
             }
             Command::Escape => self.escape(ctx),
@@ -261,10 +261,20 @@ impl App {
 
     /// Runs the commands that are actions of the editor.
     fn run_on_scene(&mut self, command: &Command) {
-        let editor = &mut self.editor;
         // Each is an undo step of its own, even while keys are held.
-        editor.end_gesture();
-        let action = match command {
+        self.editor.end_gesture();
+        if let Some(action) = self.action_of(command)
+            && self.editor.changes(action)
+            && let Some(message) = message_after(command)
+        {
+            self.editor.notify_of_step(message.to_owned());
+        }
+    }
+
+    /// Returns the action that a command is; `None` if it does something else, or nothing.
+    fn action_of(&mut self, command: &Command) -> Option<Action> {
+        let editor = &mut self.editor;
+        Some(match command {
             Command::Undo => Action::Undo,
             Command::Redo => Action::Redo,
             Command::Live => Action::Show(Mode::Live),
@@ -280,22 +290,16 @@ impl App {
             }
             Command::FrameSelected | Command::FrameAll => {
                 let only_selected = *command == Command::FrameSelected;
-                let Some(camera) = framing_camera(editor, only_selected) else {
-                    return;
-                };
+                let camera = framing_camera(editor, only_selected)?;
                 Action::Edit(Edit::Camera(camera, "frame"))
             }
             Command::ViewFront => view_along(editor, DVec3::NEG_Z),
             Command::ViewRight => view_along(editor, DVec3::NEG_X),
             Command::ViewTop => view_along(editor, DVec3::NEG_Y),
-            Command::Perspective if has_projection(editor, Projection::Perspective) => return,
-            Command::Perspective => change_projection(editor, Projection::Perspective),
-            Command::Orthographic if has_projection(editor, Projection::Orthographic) => return,
-            Command::Orthographic => change_projection(editor, Projection::Orthographic),
-            Command::MarkersOn => Action::Edit(Edit::LightVisualization(true)),
-            Command::MarkersOff => Action::Edit(Edit::LightVisualization(false)),
-            Command::Delete => return delete(editor),
-            Command::ToggleVisible => return toggle_visible(editor),
+            Command::Projection(projection) => change_projection(editor, *projection)?,
+            Command::Markers(are_shown) => Action::Edit(Edit::LightVisualization(*are_shown)),
+            Command::Delete => Action::Edit(delete(editor)?),
+            Command::ToggleVisible => Action::Edit(toggle_visible(editor)),
             Command::Group => Action::Edit(Edit::Group(
                 editor.selection().indices(ItemKind::Object),
                 free_group_name(editor.scene(), "Group 1"),
@@ -306,57 +310,46 @@ impl App {
             }
             Command::MergePacks => Action::Edit(Edit::MergePacks),
             Command::Join => Action::Edit(Edit::Join(objects_to_join(editor))),
-            Command::Separate => match editor.selection().item() {
-                Some(item) => Action::Edit(Edit::Separate(item.index)),
-                None => return,
-            },
+            Command::Separate => Action::Edit(Edit::Separate(editor.selection().item()?.index)),
             Command::PutDown => match put_down(editor.shown(), editor.selection()) {
                 Ok(edit) => Action::Edit(edit),
-                Err(why) => return editor.notify(why.to_owned()),
+                Err(why) => {
+                    editor.notify(why.to_owned());
+                    return None;
+                }
             },
             Command::AddBookmark => add_bookmark(editor),
             Command::GoToBookmark(index) => {
-                let Some(bookmark) = editor.scene().bookmarks.get(*index) else {
-                    return;
-                };
+                let bookmark = editor.scene().bookmarks.get(*index)?;
                 Action::Edit(Edit::Camera(bookmark.camera.clone(), "bookmark"))
             }
             Command::SelectSamePack => {
-                if editor.selection().items().is_empty() {
-                    return;
-                }
                 Action::Select(with_same_pack(editor.scene(), editor.selection()))
             }
-            Command::Rename if editor.selection().items().len() > 1 => {
+            Command::Rename => {
                 self.layout.show_outliner();
-                let group = editor.selection().group(editor.scene());
-                return self.outliner.rename_group(group.map(str::to_owned));
+                self.outliner.rename(editor.scene(), editor.selection());
+                return None;
             }
             Command::MoveUp | Command::MoveDown => {
                 let is_down = *command == Command::MoveDown;
                 let Some(edit) = move_step(editor, is_down) else {
                     let side = if is_down { "below" } else { "above" };
-                    return editor.notify(format!("Nothing is {side} it in its list or group"));
+                    editor.notify(format!("Nothing is {side} it in its list or group"));
+                    return None;
                 };
                 Action::Edit(edit)
             }
-            Command::Duplicate if editor.selection().items().len() > 1 => {
-                return duplicate_all(editor);
-            }
-            on_item => match (on_item, editor.selection().items()) {
-                (Command::Rename, [item]) => {
-                    self.layout.show_outliner();
-                    return self.outliner.rename(editor.scene(), *item);
+            Command::Duplicate => match editor.selection().items() {
+                [] => return None,
+                [item] => Action::Edit(Edit::Duplicate(*item)),
+                _ => {
+                    duplicate_all(editor);
+                    return None;
                 }
-                (Command::Duplicate, [item]) => Action::Edit(Edit::Duplicate(*item)),
-                _ => return,
             },
-        };
-        if editor.changes(action)
-            && let Some(message) = message_after(command)
-        {
-            editor.notify_of_step(message.to_owned());
-        }
+            _ => return None,
+        })
     }
 
     /// Leaves the innermost mode or window. If there is none, a second press asks whether to quit.
@@ -404,10 +397,14 @@ impl App {
 /// meant for a text field.
 fn message_after(command: &Command) -> Option<&'static str> {
     Some(match command {
-        Command::Orthographic => "Orthographic projection; P switches to perspective",
-        Command::Perspective => "Perspective projection; O switches to orthographic",
-        Command::MarkersOn => "Light markers are shown; U hides them",
-        Command::MarkersOff => "Light markers are hidden; I shows them",
+        Command::Projection(Projection::Orthographic) => {
+            "Orthographic projection; P switches to perspective"
+        }
+        Command::Projection(Projection::Perspective) => {
+            "Perspective projection; O switches to orthographic"
+        }
+        Command::Markers(true) => "Light markers are shown; U hides them",
+        Command::Markers(false) => "Light markers are hidden; I shows them",
         _ => return None,
     })
 }
@@ -425,14 +422,15 @@ fn add_bookmark(editor: &mut Editor) -> Action {
 }
 
 fn view_along(editor: &Editor, direction: DVec3) -> Action {
-    Action::Edit(Edit::Camera(axis_camera(editor, direction), "view"))
+    let camera = looking_along(&editor.shown().camera, editor.middle(), direction);
+    Action::Edit(Edit::Camera(camera, "view"))
 }
 
-fn has_projection(editor: &Editor, projection: Projection) -> bool {
-    editor.shown().camera.projection == projection
-}
-
-fn change_projection(editor: &Editor, projection: Projection) -> Action {
-    let camera = projected_camera(editor, projection);
-    Action::Edit(Edit::Camera(camera, "projection"))
+/// Returns the action that switches to a projection; `None` if the camera has it.
+fn change_projection(editor: &Editor, projection: Projection) -> Option<Action> {
+    let scene = editor.shown();
+    (scene.camera.projection != projection).then(|| {
+        let camera = projected(&scene.camera, scene.middle(), projection);
+        Action::Edit(Edit::Camera(camera, "projection"))
+    })
 }

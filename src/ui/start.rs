@@ -24,23 +24,23 @@ pub struct StartStats {
 pub struct StartWatch {
     since: Instant,
     sender: Sender<StartStats>,
-    /// Milliseconds until the first frame was drawn, and whether the last frame had a picture.
-    drawn: Option<(f64, bool)>,
+    /// Milliseconds until the first frame was drawn.
+    window_ms: Option<f64>,
+    /// Whether the last frame had a picture; `None` before the first frame.
+    had_picture: Option<bool>,
 }
 
 impl StartWatch {
     /// Creates a watch for a start that began at this time. The result arrives in the channel.
     pub fn new(since: Instant) -> (Self, Receiver<StartStats>) {
         let (sender, stats) = channel();
-        let drawn = None;
-        (
-            Self {
-                since,
-                sender,
-                drawn,
-            },
-            stats,
-        )
+        let watch = Self {
+            since,
+            sender,
+            window_ms: None,
+            had_picture: None,
+        };
+        (watch, stats)
     }
 
     /// Called once a frame; `has_picture` says whether it shows a traced picture. Returns true in the frame after the
@@ -48,13 +48,11 @@ impl StartWatch {
     pub fn tick(&mut self, ctx: &Context, has_picture: bool) -> bool {
         ctx.request_repaint();
         let ms = self.since.elapsed().as_secs_f64() * 1e3;
-        let Some((window_ms, had_picture)) = self.drawn else {
+        let Some(had_picture) = self.had_picture.replace(has_picture) else {
             // The first frame is still being made; the next one knows when it was drawn.
-            self.drawn = Some((f64::NAN, has_picture));
             return false;
         };
-        let window_ms = if window_ms.is_nan() { ms } else { window_ms };
-        self.drawn = Some((window_ms, has_picture));
+        let window_ms = *self.window_ms.get_or_insert(ms);
         if had_picture {
             // The receiver is read after the window has closed.
             let _ = self.sender.send(StartStats {

@@ -3,7 +3,7 @@
 use egui::{Align2, Area, Context, Frame, Id, Margin, Rect, RichText, ScrollArea, Stroke, vec2};
 
 use super::icons;
-use super::theme::{GRID, palette};
+use super::theme::{GRID, ROW, palette};
 use crate::editor::Message;
 
 /// Lifetime of messages that are not errors, in seconds: the base, the reading time per character, and the maximum.
@@ -112,28 +112,21 @@ impl Toasts {
 /// Draws one message of this width. Returns whether it was dismissed.
 fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
     let colors = palette(ui.ctx());
-    let (icon, color) = if message.is_error {
-        (icons::ERROR, colors.error)
+    let (icon, color, border) = if message.is_error {
+        (icons::ERROR, colors.error, colors.error)
     } else {
-        (icons::INFO, colors.accent)
+        (icons::INFO, colors.accent, colors.line)
     };
     let frame = Frame::new()
         .fill(colors.raised)
-        .stroke(Stroke::new(
-            1.0,
-            if message.is_error {
-                colors.error
-            } else {
-                colors.line
-            },
-        ))
+        .stroke(Stroke::new(1.0, border))
         .corner_radius(4)
         .inner_margin(Margin::same(10));
     frame
         .show(ui, |ui| {
             ui.set_width(width);
             // A single line is centred on the buttons beside it.
-            let padding = (super::theme::ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
+            let padding = (ROW - ui.text_style_height(&egui::TextStyle::Body)) / 2.0;
             ui.horizontal_top(|ui| {
                 ui.vertical(|ui| {
                     ui.add_space(padding);
@@ -141,7 +134,7 @@ fn draw(ui: &mut egui::Ui, width: f32, message: &Message) -> bool {
                 });
                 ui.vertical(|ui| {
                     ui.add_space(padding);
-                    ui.set_width(ui.available_width() - 2.0 * super::theme::ROW - 2.0 * GRID);
+                    ui.set_width(ui.available_width() - 2.0 * ROW - 2.0 * GRID);
                     body(ui, &message.text);
                 });
                 if icons::button(ui, icons::COPY, "Copy message").clicked() {

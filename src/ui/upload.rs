@@ -1,64 +1,52 @@
 //! Uploads pictures to the graphics card: only the parts that have changed.
 
-use std::ops::Range;
-
 use egui::{Color32, ColorImage, Painter, Rect, TextureHandle, pos2};
 
 use crate::image::Image;
+use crate::plan::Region;
 
 /// Side of the compared squares, in pixels.
 const TILE_SIDE: usize = 64;
 /// Share of changed pixels above which a picture is sent whole: one large upload is cheaper than many small ones.
 const MAX_CHANGED_SHARE: f64 = 0.5;
 
-/// A rectangle of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PicturePart {
-    /// Columns of pixels.
-    pub columns: Range<usize>,
-    /// Rows of pixels.
-    pub rows: Range<usize>,
-}
-
 /// Returns the parts in which `new` differs from `old`; `None` if `new` should be sent whole, because its size or
 /// most of it has changed.
-pub fn changed_parts(old: &Image, new: &Image) -> Option<Vec<PicturePart>> {
+pub fn changed_parts(old: &Image, new: &Image) -> Option<Vec<Region>> {
     if (old.width, old.height) != (new.width, new.height) {
         return None;
     }
     let max_changed = (new.pixels.len() as f64 * MAX_CHANGED_SHARE) as usize;
-    let mut parts: Vec<PicturePart> = Vec::new();
+    let mut parts: Vec<Region> = Vec::new();
     let mut changed = 0;
     for top in (0..new.height).step_by(TILE_SIDE) {
-        let rows = top..(top + TILE_SIDE).min(new.height);
+        let rows = (top, (top + TILE_SIDE).min(new.height));
         for left in (0..new.width).step_by(TILE_SIDE) {
-            let columns = left..(left + TILE_SIDE).min(new.width);
-            if !differ(old, new, &columns, &rows) {
+            let columns = (left, (left + TILE_SIDE).min(new.width));
+            let part = Region { columns, rows };
+            if pixel_rows(old, part).eq(pixel_rows(new, part)) {
                 continue;
             }
-            changed += columns.len() * rows.len();
+            changed += part.pixels();
             if changed > max_changed {
                 return None;
             }
             match parts.last_mut() {
-                Some(last) if last.rows == rows && last.columns.end == left => {
-                    last.columns.end = columns.end;
+                Some(last) if last.rows == rows && last.columns.1 == left => {
+                    last.columns.1 = columns.1;
                 }
-                _ => parts.push(PicturePart {
-                    columns,
-                    rows: rows.clone(),
-                }),
+                _ => parts.push(part),
             }
         }
     }
     Some(parts)
 }
 
-fn differ(old: &Image, new: &Image, columns: &Range<usize>, rows: &Range<usize>) -> bool {
-    rows.clone().any(|row| {
-        let range = row * new.width + columns.start..row * new.width + columns.end;
-        old.pixels[range.clone()] != new.pixels[range]
-    })
+/// The pixels of a part, row by row.
+fn pixel_rows(image: &Image, part: Region) -> impl Iterator<Item = &[[u8; 4]]> {
+    let (left, right) = part.columns;
+    let starts = (part.rows.0..part.rows.1).map(|row| row * image.width);
+    starts.map(move |start| &image.pixels[start + left..start + right])
 }
 
 /// Paints a whole texture into a rectangle.
@@ -74,16 +62,10 @@ pub fn to_color_image(image: &Image) -> ColorImage {
 }
 
 /// Converts a part of a picture for the graphics card.
-pub fn part_to_color_image(image: &Image, part: &PicturePart) -> ColorImage {
-    let rows = part.rows.clone();
-    let pixels = rows.flat_map(|row| {
-        let start = row * image.width;
-        image.pixels[start + part.columns.start..start + part.columns.end]
-            .iter()
-            .copied()
-            .map(color)
-    });
-    ColorImage::new([part.columns.len(), part.rows.len()], pixels.collect())
+pub fn part_to_color_image(image: &Image, part: Region) -> ColorImage {
+    let size = [part.columns, part.rows].map(|(first, end)| end - first);
+    let pixels = pixel_rows(image, part).flatten().copied().map(color);
+    ColorImage::new(size, pixels.collect())
 }
 
 /// Converts a pixel. Pixels that are not traced are transparent.
@@ -113,9 +95,9 @@ mod tests {
         for column in 60..70 {
             new.pixels[199 * 300 + column] = [9; 4];
         }
-        let part = PicturePart {
-            columns: 0..128,
-            rows: 192..200,
+        let part = Region {
+            columns: (0, 128),
+            rows: (192, 200),
         };
         assert_eq!(changed_parts(&old, &new), Some(vec![part]));
     }
@@ -134,9 +116,9 @@ mod tests {
             match changed_parts(&old, &new) {
                 None => card = to_color_image(&new),
                 Some(parts) => for part in parts {
-                    let piece = part_to_color_image(&new, &part);
-                    for (row, pixels) in part.rows.clone().zip(piece.pixels.chunks(piece.size[0])) {
-                        let start = row * size.0 + part.columns.start;
+                    let piece = part_to_color_image(&new, part);
+                    for (row, pixels) in (part.rows.0..part.rows.1).zip(piece.pixels.chunks(piece.size[0])) {
+                        let start = row * size.0 + part.columns.0;
                         card.pixels[start..start + pixels.len()].copy_from_slice(pixels);
                     }
                 }

@@ -1,7 +1,5 @@
 //! The picture in the middle of the window: exact pixels, letterboxed.
 
-use std::sync::Arc;
-
 use egui::{
     Color32, Context, Painter, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureFilter,
     TextureHandle, TextureOptions, TextureWrapMode, Ui, UiBuilder, Vec2, pos2, vec2,
@@ -49,10 +47,10 @@ pub struct Place {
 impl Display {
     /// Takes a picture, unless a newer one is shown.
     pub fn take(&mut self, ctx: &Context, frame: Frame) {
-        let place = if frame.is_still {
-            &mut self.still
+        let (place, name) = if frame.is_still {
+            (&mut self.still, "still picture")
         } else {
-            &mut self.live
+            (&mut self.live, "live view")
         };
         if place
             .as_ref()
@@ -60,11 +58,6 @@ impl Display {
         {
             return;
         }
-        let name = if frame.is_still {
-            "still picture"
-        } else {
-            "live view"
-        };
         // A graphics card limits the size of textures. The file that is written keeps its full size.
         let longest = ctx.input(|input| input.max_texture_side).max(1);
         let side = frame.image.width.max(frame.image.height);
@@ -80,12 +73,9 @@ impl Display {
                     None => shown.texture.set(texture(&frame.image), SHARP),
                     Some(parts) => {
                         for part in parts {
-                            let place = [part.columns.start, part.rows.start];
-                            shown.texture.set_partial(
-                                place,
-                                part_to_color_image(&frame.image, &part),
-                                SHARP,
-                            );
+                            let place = [part.columns.0, part.rows.0];
+                            let image = part_to_color_image(&frame.image, part);
+                            shown.texture.set_partial(place, image, SHARP);
                         }
                     }
                 }
@@ -213,7 +203,7 @@ pub fn low_res(pixels: (u32, u32)) -> (u32, u32) {
 }
 
 /// Describes a picture for the status line.
-pub fn describe(frame: &Frame, scene: &Arc<Scene>) -> String {
+pub fn describe(frame: &Frame, scene: &Scene) -> String {
     let (width, height) = frame.full_size;
     let (coarse_width, coarse_height) = (frame.image.width, frame.image.height);
     let size = if frame.step == 1 {

@@ -165,12 +165,11 @@ fn show(ui: &mut Ui, explanation: &Explanation, depth: usize) {
                 *color,
             );
         }
-        Explanation::Surface(terms) => show_surface(ui, terms, depth),
+        Explanation::Surface(terms) => show_surface(ui, terms, explanation.color(), depth),
     }
 }
 
-fn show_surface(ui: &mut Ui, terms: &ShadingTerms, depth: usize) {
-    let color = Explanation::Surface(Box::new(terms.clone())).color();
+fn show_surface(ui: &mut Ui, terms: &ShadingTerms, color: DVec3, depth: usize) {
     ui.horizontal(|ui| {
         swatch(ui, color);
         ui.label(RichText::new(channels(color)).monospace());

@@ -91,8 +91,8 @@ impl Entry {
         state: Option<&ExportState>,
         editor: &mut Editor,
     ) -> Option<ExportOrder> {
-        let problem = self.order.as_mut()?.take_problem();
-        if let Some(why) = problem {
+        let order = self.order.as_mut()?;
+        if let Some(why) = order.take_problem() {
             let name = &self.name;
             editor.report_error_in(
                 UNSTORED_TOPIC,
@@ -122,12 +122,10 @@ impl Entry {
             return None;
         }
         let Some(state) = state else {
-            if let Some(ExportOrder { name, settings, .. }) = &self.order {
-                let folder = &settings.folder;
-                editor.notify(format!(
-                    "{name} was cancelled; finished frames are kept in {folder}"
-                ));
-            }
+            let (name, folder) = (&self.name, &order.settings.folder);
+            editor.notify(format!(
+                "{name} was cancelled; finished frames are kept in {folder}"
+            ));
             self.end();
             return None;
         };
@@ -190,17 +188,12 @@ impl Entry {
             return;
         };
         let written = state.done.written;
-        let (made_for, texture) = self.thumb.get_or_insert_with(|| {
-            let load = |name| {
-                ui.ctx()
-                    .load_texture(name, to_color_image(image), TextureOptions::LINEAR)
-            };
-            (written, load("exported"))
-        });
-        if *made_for != written {
-            *made_for = written;
-            texture.set(to_color_image(image), TextureOptions::LINEAR);
-        }
+        let thumb = self.thumb.take().filter(|(of, _)| *of == written);
+        let (_, texture) = self.thumb.insert(thumb.unwrap_or_else(|| {
+            let image = to_color_image(image);
+            let texture = ui.load_texture("exported", image, TextureOptions::LINEAR);
+            (written, texture)
+        }));
         ui.add(Picture::new(&*texture).fit_to_exact_size(vec2(THUMB, THUMB)));
     }
 }

@@ -30,7 +30,6 @@ const MIN_SAMPLE_PIXELS: f64 = 4096.0;
 const REPEAT_BELOW_SECONDS: f64 = 2e-3;
 
 /// Frames of a sequence that are missing from their folder or differ from what they should be.
-#[derive(Default)]
 struct Missing {
     /// Their number.
     count: usize,
@@ -102,13 +101,12 @@ impl Forecast {
         (self.examined_for, self.folder_state) = (Some(examined_for), None);
         let (sequence, video) = (sequence.clone(), settings.video(sequence));
         let examine = move || {
-            let replaces_video = video.as_ref().is_some_and(|(path, _)| path.exists());
-            let is_loop = video.is_some() && sequence.is_loop();
-            let missing = missing(&sequence)?;
+            let (count, replaced) = missing(&sequence)?;
             Ok(Missing {
-                replaces_video,
-                is_loop,
-                ..missing
+                count,
+                replaced,
+                replaces_video: video.as_ref().is_some_and(|(path, _)| path.exists()),
+                is_loop: video.is_some() && sequence.is_loop(),
             })
         };
         self.examining = Background::start("glint-look", examine);
@@ -283,20 +281,13 @@ fn seconds_of_frame(sequence: &Sequence) -> Option<f64> {
     Some(base_seconds + (seconds - base_seconds).max(0.0) * scale)
 }
 
-fn missing(sequence: &Sequence) -> Result<Missing, String> {
+/// The number of missing frames, and of those among them that replace other files.
+fn missing(sequence: &Sequence) -> Result<(usize, usize), String> {
     // A missing folder holds no frames; examining it must not create it.
     if !sequence.folder.exists() {
-        let count = sequence.frames.count();
-        return Ok(Missing {
-            count,
-            ..Missing::default()
-        });
+        return Ok((sequence.frames.count(), 0));
     }
     let missing = sequence.missing().map_err(|error| error.to_string())?;
     let exists = |frame: &u64| sequence.path(*frame).exists();
-    Ok(Missing {
-        count: missing.count(),
-        replaced: missing.iter().filter(exists).count(),
-        ..Missing::default()
-    })
+    Ok((missing.count(), missing.iter().filter(exists).count()))
 }

@@ -59,7 +59,7 @@ pub struct Exports {
     /// Whether the window is shown.
     pub is_open: bool,
     /// Rectangle of the window on the screen while it is shown.
-    window_rect: Option<Rect>,
+    pub window_rect: Option<Rect>,
     /// The program's data folder, if there is one.
     folder: Option<PathBuf>,
     /// The current settings while the window is open.
@@ -167,11 +167,6 @@ impl Exports {
             "export {done}/{}{time_left}{more}",
             state.done.total
         ))
-    }
-
-    /// The rectangle of the window on the screen, if it is shown.
-    pub fn place(&self) -> Option<Rect> {
-        self.window_rect
     }
 
     /// Returns whether any export or estimate is still in progress.

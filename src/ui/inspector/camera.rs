@@ -38,10 +38,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     if camera.projection != before.projection {
         // As with the keyboard commands, which keep the apparent size of things.
-        out.commands.push(match camera.projection {
-            Projection::Perspective => Command::Perspective,
-            Projection::Orthographic => Command::Orthographic,
-        });
+        out.commands.push(Command::Projection(camera.projection));
     } else if let Some(field) = changed.filter(|_| camera != *before) {
         out.edit(Edit::Camera(camera, field));
     }

@@ -5,14 +5,15 @@ use egui::{Id, Ui};
 use glam::DVec3;
 
 use super::title::title_field;
-use crate::editor::{Edit, Item, marker_radius};
+use crate::editor::{Edit, Item, ItemKind, marker_radius};
 use crate::scene::{
-    self, ColorPack, Light, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
-    Object, PropertyValue, Scene, Shape, default_intensity,
+    self, ColorPack, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
+    PropertyValue, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
+use crate::ui::menu_entry::on_click;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{EditedPart, Field, FieldRows, color_names, coordinate, fraction};
 use crate::words::counted;
@@ -26,15 +27,38 @@ pub const COLOR_PACK: &str = "color pack";
 /// Label of the row that sets ambient and diffuse colour together.
 pub const BOTH_COLORS: (&str, [&str; 3]) = color_names!("color");
 
-/// Shows a light and its marker. Returns the edit of a field that the user set to the value it already has, if any.
-pub fn light(
+/// Shows the properties of an item; if it is the only one selected, also what cannot be done with several. Returns the
+/// edit of a field that the user set to the value it already has, if any.
+pub fn item(
+    ui: &mut Ui,
+    scene: &Scene,
+    (item, is_alone): (Item, bool),
+    out: &mut UiRequests,
+) -> Option<(Edit, EditedPart)> {
+    let (icon, name) = (icons::of_item(scene, item), item.name(scene)?);
+    title_field(ui, icon, item, name, out);
+    match item.kind {
+        ItemKind::Light => light(ui, scene, item.index, out),
+        ItemKind::Object => object(ui, scene, (item.index, is_alone), out),
+        ItemKind::Pack => {
+            let (name, value) = scene.color_packs.get_index(item.index)?;
+            let chosen = pack(ui, item.index, value, out);
+            if is_alone {
+                used_by(ui, scene, name, out);
+            }
+            chosen
+        }
+    }
+}
+
+/// Shows a light and its marker.
+fn light(
     ui: &mut Ui,
     scene: &Scene,
     index: usize,
-    before: &Light,
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
-    title_field(ui, icons::LIGHT, Item::light(index), &before.name, out);
+    let before = scene.lights.get(index)?;
     let mut light = before.clone();
     let mut rows = FieldRows::new(ui);
     rows.vector(
@@ -147,21 +171,13 @@ fn pack_choice(rows: &mut FieldRows, scene: &Scene, name: &mut String) {
 }
 
 /// Shows an object's shape and color pack; if it is the only one selected, also the tools to join and separate it.
-/// Returns the edit of a field that the user set to the value it already has, if any.
-pub fn object(
+fn object(
     ui: &mut Ui,
     scene: &Scene,
     (index, is_alone): (usize, bool),
-    before: &Object,
     out: &mut UiRequests,
 ) -> Option<(Edit, EditedPart)> {
-    title_field(
-        ui,
-        icons::of_shape(&before.shape),
-        Item::object(index),
-        &before.name,
-        out,
-    );
+    let before = scene.objects.get(index)?;
     let mut object = before.clone();
     let mut rows = FieldRows::new(ui);
     rows.heading(before.shape.kind());
@@ -209,9 +225,8 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
         Shape::Triangle(_) => {
             let hint =
                 "Join this triangle and all that are connected by shared corners into one mesh";
-            if tool_button(rows, "Join connected", hint, true) {
-                out.commands.push(Command::Join);
-            }
+            let join = rows.ui.button("Join connected");
+            on_click(rows.ui, join, (hint, Command::Join), out);
         }
         Shape::Mesh(mesh) => {
             let faces = mesh.source.triangles().faces().len();
@@ -221,17 +236,12 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
             }
             let hint =
                 format!("Make each triangle an object of its own, up to {MAX_SEPARATED} of them");
-            if tool_button(rows, "Separate", &hint, mesh.is_separable()) {
-                out.commands.push(Command::Separate);
-            }
+            let separate = egui::Button::new("Separate");
+            let separate = rows.ui.add_enabled(mesh.is_separable(), separate);
+            on_click(rows.ui, separate, (&hint, Command::Separate), out);
         }
         _ => {}
     }
-}
-
-fn tool_button(rows: &mut FieldRows, name: &str, hint: &str, is_enabled: bool) -> bool {
-    let button = rows.ui.add_enabled(is_enabled, egui::Button::new(name));
-    button.hint(hint).clicked()
 }
 
 /// Counts the users of a color pack. This visits every object; a drag cannot change the count, so it is not
@@ -263,9 +273,8 @@ fn shape_rows(rows: &mut FieldRows, shape: &mut Shape) {
     });
 }
 
-/// Shows the colours of a color pack. Returns the edit of a field that the user set to the value it already has, if
-/// any.
-pub fn pack(
+/// Shows the colours of a color pack.
+fn pack(
     ui: &mut Ui,
     index: usize,
     before: &ColorPack,
@@ -331,7 +340,7 @@ pub fn pack(
 }
 
 /// Lists the users of a color pack; a click selects one.
-pub fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
+fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     let mut rows = FieldRows::new(ui);
     rows.heading("Used by");
     let mut all = Item::users_of_pack(scene, name);

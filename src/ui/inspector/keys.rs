@@ -6,7 +6,7 @@ use egui::{Button, Id, Ui};
 
 use super::camera::camera_rows;
 use super::items::angle;
-use super::title::{list_differing, title};
+use super::title::{differing, list_differing, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyId, Keys, MAX_SECONDS, Orientation, Owners, Scene, Shape,
@@ -48,21 +48,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
         .iter()
         .filter_map(|place| animation.time_and_pace_of(*place));
     let paces: Vec<_> = paces.map(|(_, pace)| pace).collect();
-    let different = [
-        (
-            "interpolation",
-            paces
-                .iter()
-                .any(|(interpolation, _)| *interpolation != pace.0),
-        ),
-        ("easing", paces.iter().any(|(_, easing)| *easing != pace.1)),
-    ];
-    list_differing(
-        ui,
-        different
-            .into_iter()
-            .filter_map(|(name, differs)| differs.then_some(name)),
+    let different = differing(
+        &paces,
+        &[
+            ("interpolation", |a, b| a.0 == b.0),
+            ("easing", |a, b| a.1 == b.1),
+        ],
     );
+    list_differing(ui, &different);
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = FieldRows::new(ui);
     rows.number(&time_field(only.is_some()), &mut new_time);
@@ -137,9 +130,8 @@ pub fn report_replaced_keys(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
     }
     let before_move: Option<BeforeMove> = ui.data_mut(|data| data.remove_temp(drag_id()));
     let before = before_move.map_or(0, |before_move| before_move.animation.all_keys().len());
-    let replaced = before.saturating_sub(editor.scene().animation.all_keys().len());
-    out.actions
-        .extend(replaced_keys_message(replaced).map(Action::Tell));
+    let message = replaced_keys_message(before, &editor.scene().animation);
+    out.actions.extend(message.map(Action::Tell));
 }
 
 /// The state before the time of keys was dragged: a drag replaces the keys that it ends on, not those that it
@@ -171,8 +163,9 @@ fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
     out.select(new);
 }
 
-/// The message after moved keys have replaced `count` others, if any.
-pub fn replaced_keys_message(count: usize) -> Option<String> {
+/// The message after moved keys have replaced others, so that of `before` keys fewer are left.
+pub fn replaced_keys_message(before: usize, now: &Animation) -> Option<String> {
+    let count = before.saturating_sub(now.all_keys().len());
     let them = if count == 1 { "it" } else { "them" };
     let keys = counted(count, "key");
     (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))

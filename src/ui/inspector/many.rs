@@ -7,7 +7,7 @@ use super::alike::{chosen_for_all, for_all, packs_of, values};
 use super::as_one::transform_group;
 use super::items;
 use super::keys;
-use super::title::{list_differing, name_field, title, title_field};
+use super::title::{differing, list_differing, name_field, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind};
 use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
@@ -31,7 +31,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         title(ui, icons::SELECTED, &format!("{} items", selected.len()));
     }
     let Some(&last) = selected.last() else { return };
-    list_differing(ui, differences(scene, selected, last).into_iter());
+    list_differing(ui, &differences(scene, selected, last));
     let name = last.name(scene).unwrap_or_default();
     let moves = if group.is_some() {
         "position, rotation and scale are those of the group"
@@ -57,25 +57,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     }
     ui.add_space(GRID);
     let mut requests = UiRequests::default();
-    let index = last.index;
-    let chosen = match last.kind {
-        ItemKind::Object => {
-            let object = scene.objects.get(index);
-            object
-                .and_then(|object| items::object(ui, scene, (index, false), object, &mut requests))
-        }
-        ItemKind::Light => {
-            let light = scene.lights.get(index);
-            light.and_then(|light| items::light(ui, scene, index, light, &mut requests))
-        }
-        ItemKind::Pack => {
-            let pack = scene.color_packs.get_index(index);
-            pack.and_then(|(name, pack)| {
-                title_field(ui, icons::PACK, last, name, &mut requests);
-                items::pack(ui, index, pack, &mut requests)
-            })
-        }
-    };
+    let chosen = items::item(ui, scene, (last, false), &mut requests);
     // Members of a group keep their own positions, rotations and so on; otherwise they would end up in one place.
     let is_shared = |chosen: &(Edit, EditedPart)| {
         let is_pack = matches!(chosen.0, Edit::Pack(..));
@@ -128,18 +110,6 @@ fn differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'static str
     names
 }
 
-/// The properties, each given by name and comparison, that are not the same for all.
-fn differing<T>(all: &[&T], properties: &[(&'static str, IsAlike<T>)]) -> Vec<&'static str> {
-    let differ = properties.iter().filter(|(_, is_alike)| {
-        let mut pairs = all.windows(2);
-        pairs.any(|pair| !is_alike(pair[0], pair[1]))
-    });
-    differ.map(|(name, _)| *name).collect()
-}
-
-/// Compares a property of two items.
-type IsAlike<T> = fn(&T, &T) -> bool;
-
 /// The properties in which the color packs that are selected or used differ.
 fn pack_differences(scene: &Scene, selected: &[Item]) -> Vec<&'static str> {
     let packs = packs_of(scene, selected).filter_map(|index| scene.color_packs.get_index(index));
@@ -162,12 +132,12 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
     let Some(object) = object_of(&last) else {
         return Vec::new();
     };
-    let others: Vec<&Object> = selected
+    let objects: Vec<&Object> = selected
         .iter()
         .filter(|item| item.kind == ItemKind::Object)
         .filter_map(object_of)
         .collect();
-    let other_values: Vec<_> = others.iter().map(|other| values(&other.shape)).collect();
+    let other_values: Vec<_> = objects.iter().map(|other| values(&other.shape)).collect();
     let mut names = Vec::new();
     for (name, value) in values(&object.shape) {
         let differs = |(other_name, other): &(&str, DVec3)| *other_name == name && *other != value;
@@ -175,15 +145,13 @@ fn object_differences(scene: &Scene, selected: &[Item], last: Item) -> Vec<&'sta
             names.push(name);
         }
     }
-    if others.iter().any(|other| other.visible != object.visible) {
-        names.push("visible");
-    }
-    if others
-        .iter()
-        .any(|other| other.color_pack != object.color_pack)
-    {
-        names.push(items::COLOR_PACK);
-    }
+    names.extend(differing(
+        &objects,
+        &[
+            ("visible", |a, b| a.visible == b.visible),
+            (items::COLOR_PACK, |a, b| a.color_pack == b.color_pack),
+        ],
+    ));
     names
 }
 

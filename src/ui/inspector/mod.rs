@@ -23,16 +23,14 @@ mod world;
 pub use keys::{interpolations_for, replaced_keys_message};
 pub use quality::{Outcome, Quality};
 pub use title::name_field;
-use title::title_field;
 
 use std::mem::discriminant;
 
 use egui::{ScrollArea, Ui};
 
-use super::icons;
 use super::requests::UiRequests;
 use super::theme::GRID;
-use crate::editor::{Editor, Item, ItemKind, Selection};
+use crate::editor::{Editor, Selection};
 use crate::scene::Target;
 
 /// Shows the properties of the selection and pushes the user's changes.
@@ -54,7 +52,10 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
             }
             Selection::Render => world::show_picture(ui, editor, quality, out),
             Selection::Items(items) => match items[..] {
-                [item] => item_rows(ui, editor, item, out),
+                [item] => {
+                    items::item(ui, scene, (item, true), out);
+                    keys::key_buttons(ui, editor, &keys::keyable_values(scene, &[item]), out);
+                }
                 _ => many::show(ui, editor, out),
             },
         }
@@ -62,32 +63,4 @@ pub fn show(ui: &mut Ui, editor: &Editor, quality: &mut Quality, out: &mut UiReq
         needs::show(ui, editor, quality.in_use(editor));
         ui.add_space(GRID);
     });
-}
-
-/// The properties of one item, and the buttons to key its values.
-fn item_rows(ui: &mut Ui, editor: &Editor, item: Item, out: &mut UiRequests) {
-    let scene = editor.shown();
-    let index = item.index;
-    match item.kind {
-        ItemKind::Light => {
-            let Some(value) = scene.lights.get(index) else {
-                return;
-            };
-            items::light(ui, scene, index, value, out);
-        }
-        ItemKind::Object => {
-            let Some(value) = scene.objects.get(index) else {
-                return;
-            };
-            items::object(ui, scene, (index, true), value, out);
-        }
-        ItemKind::Pack => {
-            if let Some((name, value)) = scene.color_packs.get_index(index) {
-                title_field(ui, icons::PACK, item, name, out);
-                items::pack(ui, index, value, out);
-                items::used_by(ui, scene, name, out);
-            }
-        }
-    }
-    keys::key_buttons(ui, editor, &keys::keyable_values(scene, &[item]), out);
 }

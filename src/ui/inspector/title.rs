@@ -55,9 +55,20 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
     None
 }
 
+/// Compares a property of two items.
+type IsAlike<T> = fn(&T, &T) -> bool;
+
+/// The properties, each given by name and comparison, that are not the same for all.
+pub fn differing<T>(all: &[T], properties: &[(&'static str, IsAlike<T>)]) -> Vec<&'static str> {
+    let differ = properties.iter().filter(|(_, is_alike)| {
+        let mut pairs = all.windows(2);
+        pairs.any(|pair| !is_alike(&pair[0], &pair[1]))
+    });
+    differ.map(|(name, _)| *name).collect()
+}
+
 /// Lists the properties in which the selected items differ.
-pub fn list_differing(ui: &mut Ui, names: impl Iterator<Item = &'static str>) {
-    let names: Vec<&str> = names.collect();
+pub fn list_differing(ui: &mut Ui, names: &[&str]) {
     if names.is_empty() {
         // The widgets below must keep the automatic ids that they have with the line, even during a drag.
         ui.skip_ahead_auto_ids(1);

@@ -1,6 +1,6 @@
 //! One figure of all stability maps: a row per subject, a column per method.
 
-use egui::{Align2, FontId, Painter, Pos2, Rect, TextStyle, Theme, Ui, pos2, vec2};
+use egui::{Align2, FontId, Painter, Rect, TextStyle, Theme, Ui, pos2, vec2};
 
 use super::super::raster::draw;
 use super::super::theme::{GRID, palette};
@@ -8,12 +8,11 @@ use super::heat;
 use super::ramp;
 use super::rates;
 use crate::image::Image;
-use crate::lab::stability::{Map, number};
+use crate::lab::stability::{Axis, Map};
 use crate::words::capitalised;
 
-/// Width of the figure in points, and pixels per point.
+/// Width of the figure in points.
 const WIDTH: f32 = 800.0;
-const SCALE: f32 = 2.0;
 /// Maximum number of maps side by side; further ones wrap to the next line.
 const COLUMNS: usize = 4;
 /// Space for the numbers to the left of a map and below it.
@@ -32,20 +31,16 @@ pub fn stability_picture(maps: &[Map]) -> Image {
         .chunk_by(|one, other| one.subject == other.subject)
         .collect();
     let height = rows.iter().map(|row| height_of(row)).sum::<f32>() + 6.0 * GRID + LINE_HEIGHT;
-    draw(
-        (WIDTH as u32, height.ceil() as u32),
-        SCALE,
-        Theme::Dark,
-        |ui| {
-            let area = ui.max_rect().shrink(2.0 * GRID);
-            let mut top = area.top() + show_scale(ui, area);
-            for row in &rows {
-                let remaining = Rect::from_min_max(pos2(area.left(), top), area.max);
-                show_row(ui, remaining, row);
-                top += height_of(row);
-            }
-        },
-    )
+    let size = (WIDTH as u32, height.ceil() as u32);
+    draw(size, Theme::Dark, |ui| {
+        let area = ui.max_rect().shrink(2.0 * GRID);
+        let mut top = area.top() + show_scale(ui, area);
+        for row in &rows {
+            let remaining = Rect::from_min_max(pos2(area.left(), top), area.max);
+            show_row(ui, remaining, row);
+            top += height_of(row);
+        }
+    })
 }
 
 fn has_single_row(map: &Map) -> bool {
@@ -169,36 +164,18 @@ fn label_axes(
     has_vertical_labels: bool,
 ) {
     let font = FontId::new(font.size * 0.85, font.family.clone());
-    let write = |at: Pos2, anchor: Align2, text: String| {
-        painter.text(at, anchor, text, font.clone(), color);
-    };
-    let (columns, rows) = (map.across.values.len(), map.up.values.len());
-    let stride = columns.div_ceil(6);
-    for (column, value) in map.across.values.iter().enumerate().step_by(stride) {
-        let x = squares.left() + (column as f32 + 0.5) * squares.width() / columns as f32;
-        write(
-            pos2(x, squares.bottom() + 2.0),
-            Align2::CENTER_TOP,
-            number(*value),
-        );
-    }
+    let stride = |axis: &Axis| axis.values.len().div_ceil(6);
+    let across = (&map.across, squares, stride(&map.across));
+    heat::number_columns(painter, across, (&font, color));
     let below = pos2(
         squares.center().x,
         squares.bottom() + 2.0 + LINE_HEIGHT * 0.85,
     );
-    write(below, Align2::CENTER_TOP, map.across.name.to_owned());
-    if !has_vertical_labels {
-        return;
+    let name = map.across.name;
+    painter.text(below, Align2::CENTER_TOP, name, font.clone(), color);
+    if has_vertical_labels {
+        heat::number_rows(painter, (&map.up, squares, stride(&map.up)), (&font, color));
+        let above = pos2(squares.left() - LEFT_MARGIN, squares.top() - 2.0);
+        painter.text(above, Align2::LEFT_BOTTOM, map.up.name, font, color);
     }
-    let stride = rows.div_ceil(6);
-    for (row, value) in map.up.values.iter().enumerate().step_by(stride) {
-        let y = squares.bottom() - (row as f32 + 0.5) * squares.height() / rows as f32;
-        write(
-            pos2(squares.left() - 4.0, y),
-            Align2::RIGHT_CENTER,
-            number(*value),
-        );
-    }
-    let above = pos2(squares.left() - LEFT_MARGIN, squares.top() - 2.0);
-    write(above, Align2::LEFT_BOTTOM, map.up.name.to_owned());
 }

@@ -295,18 +295,13 @@ impl Chart {
             let is_first = self.in_use == Some(*index) || self.chosen == Some(*index);
             (!is_first, !front.contains(index))
         };
-        let is_named = |index: &usize| !self.is_one_of_several || rank(index) != (true, true);
+        let is_weak = |index: &usize| rank(index) == (true, true);
+        let is_named = |index: &usize| !self.is_one_of_several || !is_weak(index);
         let mut order: Vec<usize> = (0..dots.len())
             .filter(|index| frame.contains(dots[*index]) && is_named(index))
             .collect();
         order.sort_by_key(rank);
-        let color = |index: usize| {
-            if rank(&index).0 && rank(&index).1 {
-                weak
-            } else {
-                strong
-            }
-        };
+        let color = |index: usize| if is_weak(&index) { weak } else { strong };
         let texts: Vec<_> = order
             .iter()
             .map(|&index| {

@@ -1,6 +1,6 @@
 //! The picture of a selected dot, its reference, or the difference of the two, shown instead of the live view.
 
-use egui::{Context, Response, Sense, TextureHandle, TextureOptions, Ui};
+use egui::{Response, Sense, TextureHandle, TextureOptions, Ui};
 
 use super::super::upload::{paint, to_color_image};
 use super::super::viewport::Place;
@@ -78,13 +78,12 @@ pub fn compose(picture: &Image, reference: &Image, mode: ComparisonMode) -> Imag
     }
 }
 
-/// The texture of the picture on screen.
+/// A picture of a dot: the dot, the mode and the study.
+type ShownPicture = (usize, ComparisonMode, u64);
+
+/// The picture on screen, with its texture.
 #[derive(Default)]
-pub struct Comparison {
-    texture: Option<TextureHandle>,
-    /// The dot, the mode and the study that the texture shows.
-    shown: Option<(usize, ComparisonMode, u64)>,
-}
+pub struct Comparison(Option<(ShownPicture, TextureHandle)>);
 
 impl Comparison {
     /// Draws a picture of a dot in the rectangle of the live view. A tooltip shows the pixel under the pointer.
@@ -92,15 +91,18 @@ impl Comparison {
         &mut self,
         ui: &mut Ui,
         place: Place,
-        (dot, mode, study): (usize, ComparisonMode, u64),
+        wanted: ShownPicture,
         (picture, reference): (&Image, &Image),
     ) -> Response {
-        self.upload(ui.ctx(), (dot, mode, study), picture, reference);
+        let shown = self.0.take().filter(|(shown, _)| *shown == wanted);
+        let (_, texture) = self.0.insert(shown.unwrap_or_else(|| {
+            let image = to_color_image(&compose(picture, reference, wanted.1));
+            let texture = ui.load_texture("lab picture", image, TextureOptions::NEAREST);
+            (wanted, texture)
+        }));
         let response = ui.allocate_rect(place.rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Lab picture"));
-        if let Some(texture) = &self.texture {
-            paint(ui.painter(), texture, place.rect);
-        }
+        paint(ui.painter(), texture, place.rect);
         if let Some(pointer) = response.hover_pos() {
             let text = describe_pixel(
                 picture,
@@ -110,27 +112,6 @@ impl Comparison {
             return response.on_hover_text_at_pointer(text);
         }
         response
-    }
-
-    fn upload(
-        &mut self,
-        ctx: &Context,
-        key: (usize, ComparisonMode, u64),
-        picture: &Image,
-        reference: &Image,
-    ) {
-        if self.shown == Some(key) {
-            return;
-        }
-        let image = to_color_image(&compose(picture, reference, key.1));
-        match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::NEAREST),
-            None => {
-                self.texture =
-                    Some(ctx.load_texture("lab picture", image, TextureOptions::NEAREST));
-            }
-        }
-        self.shown = Some(key);
     }
 }
 

@@ -44,21 +44,16 @@ impl Lab {
         out: &mut UiRequests,
     ) {
         ui.set_width(DETAILS_WIDTH - GRID);
-        let chosen = self
-            .chosen
-            .and_then(|index| self.study.as_ref()?.measurements.get(index));
-        let Some(dot) = chosen else {
+        let chosen = self.chosen.zip(self.study.as_deref());
+        let chosen = chosen.filter(|(index, study)| *index < study.measurements.len());
+        let Some((index, study)) = chosen else {
             if !dots.is_empty() {
                 ui.weak("Click a dot to see its picture.");
             }
             return;
         };
-        let same_dot = self.same_dot_as_chosen(dots);
+        let dot = &study.measurements[index];
         ui.label(RichText::new(&dot.candidate.name).strong());
-        let study = self.study.as_deref();
-        let account = study
-            .zip(self.chosen)
-            .map(|(study, index)| account(study, index));
         ui.horizontal_wrapped(|ui| {
             for (mode, name, hint) in COMPARISON_MODES {
                 ui.selectable_value(&mut self.mode, mode, name).hint(hint);
@@ -78,34 +73,25 @@ impl Lab {
             out.edit(Edit::Render(render, "settings from the lab"));
         }
         ui.add_space(GRID / 2.0);
-        ui.label(account.unwrap_or_default())
-            .hint(dot.candidate.words());
+        ui.label(account(study, index)).hint(candidate.words());
         ui.add_space(GRID / 2.0);
         ui.label(RichText::new(figures(dot)).monospace());
-        if same_dot.len() > 1 {
+        let same_dot = dots.iter().find(|dot| dot.contains(&index));
+        let others = same_dot.into_iter().flatten();
+        let mut others = others.filter(|other| **other != index).peekable();
+        if others.peek().is_some() {
             ui.weak("Shares its dot with");
             ui.horizontal_wrapped(|ui| {
-                let chosen = self.chosen;
-                let others = same_dot.iter().filter(|(index, _)| Some(*index) != chosen);
-                for (number, (index, name)) in others.enumerate() {
+                for (number, &other) in others.enumerate() {
                     if number > 0 {
                         ui.weak("·");
                     }
+                    let name = &study.measurements[other].candidate.name;
                     if ui.link(name).clicked() {
-                        self.chosen = Some(*index);
+                        self.chosen = Some(other);
                     }
                 }
             });
         }
-    }
-
-    /// The measurements in the same dot as the selected one, with their names.
-    fn same_dot_as_chosen(&self, dots: &[Vec<usize>]) -> Vec<(usize, String)> {
-        let (Some(chosen), Some(study)) = (self.chosen, &self.study) else {
-            return Vec::new();
-        };
-        let dot = dots.iter().find(|dot| dot.contains(&chosen));
-        let name = |&index: &usize| (index, study.measurements[index].candidate.name.clone());
-        dot.into_iter().flatten().map(name).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use egui::{Align2, RichText, Ui};
 use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Text};
+use indexmap::IndexMap;
 
 use super::super::theme::{GRID, palette};
 use super::axes::{decades, plain};
@@ -51,16 +52,10 @@ fn finding(growth: &Growth) -> String {
 
 fn show(ui: &mut Ui, growth: &Growth) {
     let colors = palette(ui.ctx());
-    let mut lines: Vec<(&Cost, Vec<[f64; 2]>)> = Vec::new();
+    let mut lines: IndexMap<String, (&Cost, Vec<[f64; 2]>)> = IndexMap::new();
     for cost in &growth.costs {
-        let at = [f64::from(cost.primitives).log10(), cost.ms.log10()];
-        match lines
-            .iter_mut()
-            .find(|(first, _)| first.name() == cost.name())
-        {
-            Some((_, points)) => points.push(at),
-            None => lines.push((cost, vec![at])),
-        }
+        let (_, points) = lines.entry(cost.name()).or_insert((cost, Vec::new()));
+        points.push([f64::from(cost.primitives).log10(), cost.ms.log10()]);
     }
     let side = growth.side();
     Plot::new("growth chart")
@@ -73,10 +68,9 @@ fn show(ui: &mut Ui, growth: &Growth) {
         .y_axis_min_width(48.0)
         .set_margin_fraction(egui::vec2(0.06, 0.1))
         .show(ui, |plot| {
-            let ends = lines.iter().filter_map(|(_, points)| points.last());
+            let ends = lines.values().filter_map(|(_, points)| points.last());
             let ends: Vec<[f64; 2]> = ends.copied().collect();
-            for (cost, points) in lines {
-                let name = cost.name();
+            for (name, (cost, points)) in lines {
                 let color = match cost.crowd {
                     Crowd::Mesh => colors.accent,
                     Crowd::Balls => colors.text,

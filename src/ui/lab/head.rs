@@ -2,7 +2,8 @@
 
 use egui::{Button, DragValue, Label, RichText, Ui};
 
-use super::super::commands::{Command, with_key};
+use super::super::commands::Command;
+use super::super::menu_entry::on_click;
 use super::super::requests::UiRequests;
 use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
@@ -74,12 +75,7 @@ impl Lab {
         out: &mut UiRequests,
     ) -> Option<LabRequest> {
         let timeline = ui.selectable_label(false, "Timeline");
-        if timeline
-            .hint(with_key(ui, "Keys and playback", &Command::Timeline))
-            .clicked()
-        {
-            out.commands.push(Command::Timeline);
-        }
+        on_click(ui, timeline, ("Keys and playback", Command::Timeline), out);
         choose(ui, &mut self.tab, TABS);
         if self.tab == Tab::Stability {
             return None;
@@ -128,30 +124,23 @@ impl Lab {
 
     fn show_bounds(&mut self, ui: &mut Ui) {
         let costs = self.study.as_deref().map(costs_of_choices);
-        let button = |ui: &mut Ui, words: &str, hint: &str| {
-            let button = ui.add_enabled(costs.is_some(), Button::new(words));
-            button.hint(hint).clicked()
+        // Keeps each button with its limit when the row wraps.
+        let mut limit = |words: &str, hint: &str, value: DragValue, name: &str| {
+            let row = ui.horizontal(|ui| {
+                let button = ui.add_enabled(costs.is_some(), Button::new(words));
+                ui.add(value).accessible_name(name);
+                button.hint(hint).clicked()
+            });
+            row.inner
         };
         let hint = "Choose the fastest dot whose error is no larger than this";
-        let rmse = DragValue::new(&mut self.bounds.0)
-            .speed(1e-5)
-            .range(1e-6..=1.0);
-        // Keeps each button with its limit when the row wraps.
-        let by_error = ui.horizontal(|ui| {
-            let is_clicked = button(ui, "Fastest below", hint);
-            ui.add(rmse.max_decimals(5)).accessible_name("RMSE at most");
-            is_clicked
-        });
+        let rmse = DragValue::new(&mut self.bounds.0).max_decimals(5);
+        let rmse = rmse.speed(1e-5).range(1e-6..=1.0);
+        let by_error = limit("Fastest below", hint, rmse, "RMSE at most");
         let hint = "Choose the most accurate dot that takes no longer than this";
-        let time = DragValue::new(&mut self.bounds.1)
-            .speed(0.1)
-            .range(0.01..=1e5);
-        let by_time = ui.horizontal(|ui| {
-            let is_clicked = button(ui, "Most accurate within", hint);
-            ui.add(time.suffix(" ms")).accessible_name("time at most");
-            is_clicked
-        });
-        let (by_error, by_time) = (by_error.inner, by_time.inner);
+        let time = DragValue::new(&mut self.bounds.1).suffix(" ms");
+        let time = time.speed(0.1).range(0.01..=1e5);
+        let by_time = limit("Most accurate within", hint, time, "time at most");
         let Some(costs) = costs else { return };
         let found = if by_error {
             cheapest_within(&costs, self.bounds.0, f64::INFINITY)

@@ -1,8 +1,8 @@
 //! Drawing of a stability map as coloured squares.
 
-use egui::{Align2, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::super::theme::{GRID, palette};
+use super::super::theme::palette;
 use super::ramp;
 use crate::lab::stability::{Axis, Map, number};
 
@@ -19,42 +19,21 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         pos2(area.left() + MARGIN.0, area.top()),
         pos2(area.right(), area.bottom() - MARGIN.1),
     );
-    let (columns, rows) = (map.across.values.len(), map.up.values.len());
-    let cell = vec2(
-        squares.width() / columns as f32,
-        squares.height() / rows as f32,
-    );
     let square = |index: usize| square_of(map, squares, index);
     paint_squares(ui, map, squares);
     let painter = ui.painter();
     let font = FontId::proportional(NUMBER_SIZE);
-    let write = |at: Pos2, anchor: Align2, text: String| {
-        painter.text(at, anchor, text, font.clone(), colors.muted);
-    };
-    for (column, value) in map.across.values.iter().enumerate() {
-        let x = squares.left() + (column as f32 + 0.5) * cell.x;
-        let text = number(*value);
-        write(pos2(x, squares.bottom() + 2.0), Align2::CENTER_TOP, text);
-    }
-    if rows > 1 {
-        for (row, value) in map.up.values.iter().enumerate() {
-            let y = squares.bottom() - (row as f32 + 0.5) * cell.y;
-            let text = number(*value);
-            write(
-                pos2(squares.left() - GRID / 2.0, y),
-                Align2::RIGHT_CENTER,
-                text,
-            );
-        }
-    }
-    let below = pos2(squares.center().x, area.bottom());
-    let names = if rows > 1 {
+    number_columns(painter, (&map.across, squares, 1), (&font, colors.muted));
+    let names = if map.up.values.len() > 1 {
+        number_rows(painter, (&map.up, squares, 1), (&font, colors.muted));
         format!("{}   (vertical: {})", map.across.name, map.up.name)
     } else {
         map.across.name.to_owned()
     };
-    write(below, Align2::CENTER_BOTTOM, names);
+    let below = pos2(squares.center().x, area.bottom());
+    painter.text(below, Align2::CENTER_BOTTOM, names, font, colors.muted);
     if let Some((x, y)) = marker {
+        let columns = map.across.values.len();
         let index = nearest(&map.up, y) * columns + nearest(&map.across, x);
         let ring = Stroke::new(2.0, colors.text);
         painter.rect_stroke(square(index), 2, ring, StrokeKind::Inside);
@@ -64,6 +43,37 @@ pub fn show(ui: &mut Ui, map: &Map, size: egui::Vec2, marker: Option<(f64, f64)>
         if let Some(index) = hovered {
             response.on_hover_text_at_pointer(describe(map, index));
         }
+    }
+}
+
+/// Horizontal position of the middle of a column, one for each value of an axis.
+pub fn middle_of_column(axis: &Axis, area: Rect, column: usize) -> f32 {
+    area.left() + (column as f32 + 0.5) * area.width() / axis.values.len() as f32
+}
+
+/// Writes every `stride`-th number of a horizontal axis below the columns of an area.
+pub fn number_columns(
+    painter: &Painter,
+    (axis, area, stride): (&Axis, Rect, usize),
+    (font, color): (&FontId, Color32),
+) {
+    for (column, value) in axis.values.iter().enumerate().step_by(stride) {
+        let at = pos2(middle_of_column(axis, area, column), area.bottom() + 2.0);
+        let text = number(*value);
+        painter.text(at, Align2::CENTER_TOP, text, font.clone(), color);
+    }
+}
+
+/// Writes every `stride`-th number of a vertical axis to the left of the rows of an area.
+pub fn number_rows(
+    painter: &Painter,
+    (axis, area, stride): (&Axis, Rect, usize),
+    (font, color): (&FontId, Color32),
+) {
+    for (row, value) in axis.values.iter().enumerate().step_by(stride) {
+        let y = area.bottom() - (row as f32 + 0.5) * area.height() / axis.values.len() as f32;
+        let (at, text) = (pos2(area.left() - 4.0, y), number(*value));
+        painter.text(at, Align2::RIGHT_CENTER, text, font.clone(), color);
     }
 }
 

@@ -53,16 +53,9 @@ pub fn place_names(
                     .flatten()
                     .any(|name| leader_line_crosses(dot, *at, *name))
         };
-        let mut found = None;
-        for at in candidates.filter(is_free) {
-            let is_best = is_clear(&at);
-            if is_best || found.is_none() {
-                found = Some(at);
-            }
-            if is_best {
-                break;
-            }
-        }
+        let mut free = candidates.filter(is_free).peekable();
+        let first = free.peek().copied();
+        let found = free.find(is_clear).or(first);
         if let Some(at) = found {
             blocked.push(at);
             blocked.extend(

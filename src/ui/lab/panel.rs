@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{Align, Key, Layout, Response, ScrollArea, Ui};
+use glam::DVec3;
 
 use super::super::requests::UiRequests;
 use super::super::theme::{GRID, ROW};
@@ -16,7 +17,7 @@ use super::stability::Stability;
 use crate::editor::Editor;
 use crate::lab::{EIGHT_BIT_FLOOR, Study, keep, kept};
 use crate::machine::processor;
-use crate::scene::{Render, Scene};
+use crate::scene::{Light, LightObj, List, Object, Render, Scene, Shape};
 use crate::trace::Threads;
 use crate::ui::prompts::primary_button;
 use crate::words::counted;
@@ -78,8 +79,9 @@ pub struct Lab {
     stored_study: Background<Option<Study>>,
 }
 
-impl Default for Lab {
-    fn default() -> Self {
+impl Lab {
+    /// Creates a lab that stores its studies in a folder, if there is one.
+    pub fn new(folder: Option<PathBuf>) -> Self {
         Self {
             study: None,
             is_running: false,
@@ -100,19 +102,9 @@ impl Default for Lab {
             stability: Stability::default(),
             asks_povray: false,
             notice: "",
-            folder: None,
+            folder,
             looked_for: None,
             stored_study: Background::default(),
-        }
-    }
-}
-
-impl Lab {
-    /// Creates a lab that stores its studies in a folder, if there is one.
-    pub fn new(folder: Option<PathBuf>) -> Self {
-        Self {
-            folder,
-            ..Self::default()
         }
     }
 
@@ -298,25 +290,12 @@ impl Lab {
     /// Returns whether the scene has changed since it was measured. Render settings do not count, as they are what
     /// is compared; nor does a reflection limit that was measured.
     pub(super) fn is_stale(&self, editor: &Editor) -> bool {
-        let without_settings = |scene: &Scene| Scene {
-            render: Render {
-                width: scene.render.width,
-                height: scene.render.height,
-                ..Render::default()
-            },
-            animation: Arc::default(),
-            bookmarks: Vec::new(),
-            ..scene.clone()
-        };
         let limit = editor.shown().render.reflection_limit;
         self.study.as_ref().is_some_and(|study| {
             let mut renders = study.measurements.iter().map(|dot| &dot.candidate.render);
             !Arc::ptr_eq(study.scene(), editor.shown())
                 && (renders.all(|render| render.reflection_limit != limit)
-                    || !looks_like(
-                        &without_settings(study.scene()),
-                        &without_settings(editor.shown()),
-                    ))
+                    || !looks_like(study.scene(), editor.shown()))
         })
     }
 
@@ -337,34 +316,37 @@ fn asks_for_reference(ui: &Ui) -> bool {
     !ui.text_edit_focused() && ui.input(|input| input.key_down(Key::B))
 }
 
-/// Returns whether two scenes look the same, ignoring names and groups of lights and objects.
+/// Returns whether two scenes have the same picture, ignoring how it is traced, and the names and groups of lights and
+/// objects.
 fn looks_like(one: &Scene, other: &Scene) -> bool {
-    let mut objects = one.objects.iter().zip(other.objects.iter());
-    let mut lights = one.lights.iter().zip(other.lights.iter());
-    let with_other_lists = Scene {
-        objects: other.objects.clone(),
-        lights: other.lights.clone(),
-        ..one.clone()
+    fn surface(object: &Object) -> (bool, &str, &Shape) {
+        (object.visible, &object.color_pack, &object.shape)
+    }
+    fn source(light: &Light) -> (bool, DVec3, f64, Option<&LightObj>) {
+        let marker = light.marker.as_ref();
+        (light.visible, light.position, light.intensity, marker)
+    }
+    let without_lists = |scene: &Scene| Scene {
+        objects: List::new(),
+        lights: List::new(),
+        bookmarks: Vec::new(),
+        animation: Arc::default(),
+        render: Render {
+            width: scene.render.width,
+            height: scene.render.height,
+            ..Render::default()
+        },
+        ..scene.clone()
     };
-    with_other_lists == *other
-        && one.objects.len() == other.objects.len()
-        && one.lights.len() == other.lights.len()
-        && lights.all(|(one, other)| {
-            let is_same_source = one.position == other.position && one.intensity == other.intensity;
-            is_same_source && one.visible == other.visible && one.marker == other.marker
-        })
-        && objects.all(|(one, other)| {
-            let is_same_surface =
-                one.visible == other.visible && one.color_pack == other.color_pack;
-            is_same_surface && one.shape == other.shape
-        })
+    let (objects, lights) = (other.objects.iter(), other.lights.iter());
+    without_lists(one) == without_lists(other)
+        && one.objects.iter().map(surface).eq(objects.map(surface))
+        && one.lights.iter().map(source).eq(lights.map(source))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Shape;
-
     #[test]
     fn names_change_nothing_that_was_measured() {
         let scene = Scene::demo();

@@ -2,16 +2,13 @@
 
 use egui::{Theme, Ui, vec2};
 
-use super::super::raster::draw;
+use super::super::raster::{SCALE, draw};
 use super::super::theme::GRID;
 use super::chart::Chart;
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
 use super::marks;
 use crate::image::Image;
 use crate::lab::{PictureLook, Study};
-
-/// Pixels per point.
-const SCALE: u32 = 2;
 
 /// Renders a chart that fills the whole picture.
 pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
@@ -22,7 +19,7 @@ pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {
     };
     let (width, height) = look.size;
     let points = (width.div_ceil(SCALE), height.div_ceil(SCALE));
-    let drawn = draw(points, SCALE as f32, theme, |ui| {
+    let drawn = draw(points, theme, |ui| {
         let frame = egui::Frame::new().inner_margin(2.0 * GRID);
         frame.show(ui, &mut show);
     });

@@ -3,8 +3,9 @@
 use egui::{Align2, FontId, Rect, Stroke, TextStyle, Ui, pos2};
 
 use super::super::theme::{GRID, palette};
+use super::heat::{middle_of_column, number_columns};
 use super::ramp;
-use crate::lab::stability::{Map, Tries, number};
+use crate::lab::stability::{Map, Tries};
 
 /// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (34.0, 30.0);
@@ -35,26 +36,16 @@ pub fn show(ui: &Ui, area: Rect, row: &[Map]) {
         painter.text(at, Align2::RIGHT_CENTER, name, font.clone(), colors.muted);
     }
     let axis = &row[0].across;
-    let column = |index: usize| {
-        frame.left() + (index as f32 + 0.5) * frame.width() / axis.values.len() as f32
-    };
-    for (index, value) in axis.values.iter().enumerate() {
-        let at = pos2(column(index), frame.bottom() + 2.0);
-        painter.text(
-            at,
-            Align2::CENTER_TOP,
-            number(*value),
-            font.clone(),
-            colors.muted,
-        );
-    }
+    number_columns(painter, (axis, frame, 1), (&font, colors.muted));
     let below = pos2(frame.center().x, frame.bottom() + 2.0 + small.size);
     painter.text(below, Align2::CENTER_TOP, axis.name, font, colors.muted);
     for (method_index, map) in row.iter().enumerate() {
         let color = colors.families[method_index % colors.families.len()];
         // Shifted sideways, so that equal rates do not cover each other.
         let shift = (method_index as f32 - (row.len() as f32 - 1.0) / 2.0) * 5.0;
-        let at = |index: usize, rate: f64| pos2(column(index) + shift, height(rate));
+        let at = |index: usize, rate: f64| {
+            pos2(middle_of_column(axis, frame, index) + shift, height(rate))
+        };
         let points = map.cells.iter().enumerate();
         let points: Vec<_> = points.map(|(index, cell)| at(index, cell.rate())).collect();
         painter.line(points.clone(), Stroke::new(1.0, color.gamma_multiply(0.6)));

@@ -43,11 +43,8 @@ pub fn accept_drop(
     let to = (item, is_after);
     let dragged = response.dnd_hover_payload::<Item>();
     let group = response.dnd_hover_payload::<DraggedGroup>();
-    let assigns_pack =
-        |dragged: &Item| dragged.kind == ItemKind::Pack && item.kind != ItemKind::Pack;
-    let assigns_pack = dragged
-        .as_ref()
-        .is_some_and(|dragged| assigns_pack(dragged));
+    let is_pack = |item: &Item| item.kind == ItemKind::Pack;
+    let assigns_pack = dragged.as_deref().is_some_and(is_pack) && !is_pack(&item);
     let edit = match dragged {
         Some(dragged) if assigns_pack => assign_pack_edit(editor, *dragged, item),
         // While filtering, groups are not listed, so nothing leaves its group or enters another.

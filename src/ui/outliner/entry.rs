@@ -3,13 +3,12 @@
 use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
-use crate::editor::{Edit, Item, ItemKind};
+use crate::editor::{Item, ItemKind};
 use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::inspector::name_field;
 use crate::ui::prompts::select_letters;
-use crate::ui::requests::UiRequests;
 use crate::ui::rows::to_bytes;
 use crate::ui::theme::{ROW, palette};
 
@@ -68,18 +67,6 @@ pub fn entry(ui: &mut Ui, rect: Rect, style: RowStyle, name: &str) -> egui::Resp
         return shown.hint(name);
     }
     shown
-}
-
-/// A button that shows or hides the item with this name.
-pub fn eye(ui: &mut Ui, scene: &Scene, item: Item, name: &str, out: &mut UiRequests) {
-    let Some(visible) = item.is_visible(scene) else {
-        return;
-    };
-    if eye_button(ui, visible, name)
-        && let Some(edit) = Edit::visible(scene, item, !visible)
-    {
-        out.edit(edit);
-    }
 }
 
 /// A button that hides what is visible and shows what is hidden. Returns whether it was pressed.

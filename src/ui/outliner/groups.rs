@@ -7,7 +7,7 @@ use egui::{Id, Rect, Response, Ui, UiBuilder};
 use super::drop::accept_drop_on_group;
 use super::entry::{Renaming, RowStyle, entry, eye_button, rename_field, row};
 use super::lines::Group;
-use crate::editor::{Action, Edit, Editor, Item, Selection};
+use crate::editor::{Edit, Editor, Item, Selection};
 use crate::ui::commands::Command;
 use crate::ui::icons;
 use crate::ui::menu_entry::{ITEM_COMMANDS, offer};
@@ -51,7 +51,7 @@ impl GroupRows {
         let response = entry(ui, rect, style, &group.name);
         if response.clicked() {
             let selected = selection_after_click(ui, editor.selection(), group.items());
-            out.actions.push(Action::Select(selected));
+            out.select(selected);
         }
         if response.double_clicked() {
             self.renaming = Some(group.name.clone());

@@ -9,9 +9,11 @@ use crate::scene::{List, Object};
 use crate::ui::icons;
 
 /// A line of the list.
+#[derive(Clone, Copy, Debug)]
 pub enum Line {
     Fixed(&'static Selection, MaterialIcon, &'static str),
-    Title(ItemKind, usize),
+    /// The title of a list: the number of items in it, and of its rows.
+    Title(ItemKind, usize, usize),
     /// A group of objects, by its index in [`Groups`].
     Group(usize),
     /// An item, and whether it is listed as a member of a group.
@@ -34,19 +36,13 @@ impl Group {
     }
 }
 
-/// A row in the list of objects if some are in groups: a group, or an object and whether it is listed as a member.
-#[derive(Clone, Copy, Debug)]
-enum Row {
-    Group(usize),
-    Object(usize, bool),
-}
-
 /// The groups of a scene's objects.
 #[derive(Debug, Default)]
 pub struct Groups {
     /// In the order of their first members.
     pub all: Vec<Group>,
-    rows: Vec<Row>,
+    /// The rows in the list of objects, if some are in groups: groups and objects.
+    rows: Vec<Line>,
     objects: List<Object>,
     folded: Vec<String>,
 }
@@ -67,11 +63,11 @@ impl Groups {
         let mut top_rows = Vec::new();
         for (index, object) in objects.iter().enumerate() {
             if object.group.is_empty() {
-                top_rows.push(Row::Object(index, false));
+                top_rows.push(Line::Entry(Item::object(index), false));
                 continue;
             }
             let group_index = *group_indices.entry(&object.group).or_insert_with(|| {
-                top_rows.push(Row::Group(self.all.len()));
+                top_rows.push(Line::Group(self.all.len()));
                 self.all.push(Group {
                     name: object.group.clone(),
                     members: Vec::new(),
@@ -87,12 +83,11 @@ impl Groups {
         }
         for row in top_rows {
             self.rows.push(row);
-            if let Row::Group(group_index) = row {
+            if let Line::Group(group_index) = row {
                 let group = &self.all[group_index];
                 if !folded.contains(&group.name) {
-                    let members = group.members.iter();
-                    self.rows
-                        .extend(members.map(|index| Row::Object(*index, true)));
+                    let members = group.items().map(|item| Line::Entry(item, true));
+                    self.rows.extend(members);
                 }
             }
         }
@@ -128,11 +123,11 @@ impl Entries<'_> {
         }
     }
 
-    fn get(&self, row: usize) -> Option<Row> {
-        let object = |index| Row::Object(index, false);
+    fn get(&self, kind: ItemKind, row: usize) -> Option<Line> {
+        let entry = |index| Line::Entry(Item { kind, index }, false);
         match self {
-            Self::All(count) => (row < *count).then_some(row).map(object),
-            Self::Filtered(indices) => indices.get(row).copied().map(object),
+            Self::All(count) => (row < *count).then_some(row).map(entry),
+            Self::Filtered(indices) => indices.get(row).copied().map(entry),
             Self::Grouped(groups) => groups.rows.get(row).copied(),
         }
     }
@@ -143,7 +138,7 @@ impl Entries<'_> {
             Self::Filtered(indices) => indices.binary_search(&index).ok(),
             Self::Grouped(groups) => {
                 let mut rows = groups.rows.iter();
-                rows.position(|row| matches!(row, Row::Object(other, _) if *other == index))
+                rows.position(|row| matches!(row, Line::Entry(item, _) if item.index == index))
             }
         }
     }
@@ -162,26 +157,16 @@ impl Lines<'_> {
         let mut row = index - FIXED_ROWS.len();
         for (kind, count, entries) in &self.0 {
             if row == 0 {
-                return Some(Line::Title(*kind, *count));
+                return Some(Line::Title(*kind, *count, entries.len()));
             }
             row -= 1;
-            match entries.get(row) {
-                Some(Row::Group(group_index)) => return Some(Line::Group(group_index)),
-                Some(Row::Object(index, is_member)) => {
-                    return Some(Line::Entry(Item { kind: *kind, index }, is_member));
-                }
-                None => {}
+            let line = entries.get(*kind, row);
+            if line.is_some() {
+                return line;
             }
             row -= entries.len();
         }
         None
-    }
-
-    /// The number of rows of a kind.
-    pub fn row_count(&self, kind: ItemKind) -> usize {
-        let mut groups = self.0.iter();
-        let group = groups.find(|(group, ..)| *group == kind);
-        group.map_or(0, |(.., entries)| entries.len())
     }
 
     /// The row of an item, if it is listed.
@@ -217,7 +202,7 @@ mod tests {
         groups.update(&scene.objects, &mut folded);
         assert!(folded.is_empty());
         groups.update(&grouped, &mut folded);
-        let is_listed = |row: &&Row| matches!(row, Row::Object(_, true));
+        let is_listed = |row: &&Line| matches!(row, Line::Entry(_, true));
         assert_eq!(groups.rows.iter().filter(is_listed).count(), 2);
     }
 }

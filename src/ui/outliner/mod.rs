@@ -17,7 +17,7 @@ use egui::{
 };
 
 use self::drop::{accept_drop, accept_drop_at_end};
-use self::entry::{Renaming, RowStyle, color_of, entry, eye, rename_field, row};
+use self::entry::{Renaming, RowStyle, color_of, entry, eye_button, rename_field, row};
 use self::groups::GroupRows;
 use self::lines::{Entries, Groups, Line, Lines};
 use self::walk::{Listed, Walk};
@@ -51,25 +51,22 @@ pub struct Outliner {
 }
 
 impl Outliner {
-    /// Starts renaming an item in its row.
-    pub fn rename(&mut self, scene: &Scene, item: Item) {
+    /// Starts renaming the selected item or group in its row.
+    pub fn rename(&mut self, scene: &Scene, selected: &Selection) {
+        let Some(item) = selected.item() else { return };
         self.filter.clear();
         self.folded.retain(|kind| *kind != item.kind);
+        self.reveals_selection = true;
+        if selected.items().len() > 1 {
+            self.group_rows.renaming = selected.group(scene).map(str::to_owned);
+            return;
+        }
         if let (ItemKind::Object, Some(object)) = (item.kind, scene.objects.get(item.index)) {
             self.group_rows
                 .folded
                 .retain(|group| *group != object.group);
         }
         self.renaming = item.name(scene).map(|name| (item, name.to_owned()));
-        self.reveals_selection = true;
-    }
-
-    /// Starts renaming a group in its row.
-    pub fn rename_group(&mut self, group: Option<String>) {
-        self.filter.clear();
-        self.folded.retain(|kind| *kind != ItemKind::Object);
-        self.group_rows.renaming = group;
-        self.reveals_selection = true;
     }
 
     fn is_filtered(&self) -> bool {
@@ -194,8 +191,7 @@ impl Outliner {
                     out.select(selection.clone());
                 }
             }
-            Some(Line::Title(kind, count)) => {
-                let listed_count = listed.lines.row_count(kind);
+            Some(Line::Title(kind, count, listed_count)) => {
                 let is_all = self.filter.is_empty() || self.folded.contains(&kind);
                 let words = if is_all {
                     count.to_string()
@@ -242,11 +238,6 @@ impl Outliner {
 
     fn lines<'a>(&self, scene: &Scene, groups: &'a Groups) -> Lines<'a> {
         let filter = self.filter.trim().to_lowercase();
-        let kinds = [
-            (ItemKind::Light, scene.lights.len()),
-            (ItemKind::Object, scene.objects.len()),
-            (ItemKind::Pack, scene.color_packs.len()),
-        ];
         let entries = |kind: ItemKind, count: usize| {
             if self.folded.contains(&kind) {
                 return Entries::All(0);
@@ -257,14 +248,11 @@ impl Outliner {
             if filter.is_empty() {
                 return Entries::All(count);
             }
-            let matches = |index: &usize| {
-                let item = Item {
-                    kind,
-                    index: *index,
-                };
+            let matches = |&index: &usize| {
+                let item = Item { kind, index };
                 let object = scene
                     .objects
-                    .get(*index)
+                    .get(index)
                     .filter(|_| kind == ItemKind::Object);
                 let group = object.map(|object| object.group.as_str());
                 let mut names = item.name(scene).into_iter().chain(group);
@@ -272,7 +260,11 @@ impl Outliner {
             };
             Entries::Filtered((0..count).filter(matches).collect())
         };
-        Lines(kinds.map(|(kind, count)| (kind, count, entries(kind, count))))
+        let kinds = [ItemKind::Light, ItemKind::Object, ItemKind::Pack];
+        Lines(kinds.map(|kind| {
+            let count = kind.count(scene);
+            (kind, count, entries(kind, count))
+        }))
     }
 
     fn title(
@@ -389,9 +381,12 @@ impl Outliner {
                 offer(ui, editor, text, command, out);
             }
         });
-        if visible.is_some() {
+        if let Some(visible) = visible {
             ui.scope_builder(UiBuilder::new().max_rect(eye_rect), |ui| {
-                eye(ui, scene, item, name, out);
+                if eye_button(ui, visible, name) {
+                    let edit = Edit::visible(scene, item, !visible);
+                    out.actions.extend(edit.map(Action::Edit));
+                }
             });
         }
         Some(response)
@@ -445,5 +440,5 @@ fn select_on_click(ui: &Ui, editor: &Editor, (listed, item): (Listed, Item), out
     } else {
         Selection::all([item])
     };
-    out.actions.push(Action::Select(selected));
+    out.select(selected);
 }

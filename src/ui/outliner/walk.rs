@@ -61,19 +61,12 @@ impl Walk {
         let last = self.last.filter(|row| listed.is_selected(editor, *row));
         let from = focused.or(last).or_else(|| listed.row_of(editor));
         let count = listed.lines.len();
-        let mut row = from;
-        let (row, selected) = loop {
-            let next = match (row, is_down) {
-                (None, true) => 0,
-                (None, false) => count - 1,
-                (Some(row), true) => row + 1,
-                (Some(row), false) => row.checked_sub(1)?,
-            };
-            if let Some(selected) = listed.selection_of(next) {
-                break (next, selected);
-            }
-            row = (next < count).then_some(Some(next))?;
-        };
+        let selectable = |row| Some((row, listed.selection_of(row)?));
+        let (row, selected) = if is_down {
+            (from.map_or(0, |row| row + 1)..count).find_map(selectable)
+        } else {
+            (0..from.unwrap_or(count)).rev().find_map(selectable)
+        }?;
         self.last = Some(row);
         self.goal = focused.map(|_| row);
         Some((row, Action::Select(selected)))

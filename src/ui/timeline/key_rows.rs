@@ -59,8 +59,7 @@ impl KeyDrag {
             0
         };
         let before = self.before.all_keys().len() + copies;
-        let replaced = before.saturating_sub(now.all_keys().len());
-        replaced_keys_message(replaced).filter(|_| *now != *self.before)
+        replaced_keys_message(before, now).filter(|_| *now != *self.before)
     }
 }
 
@@ -153,7 +152,7 @@ impl KeyRows {
         (track, keys): (Option<usize>, &[Key<T>]),
         out: &mut UiRequests,
     ) {
-        let (rect, response) = band(ui, scale, Sense::click_and_drag());
+        let (rect, response) = band(ui, scale);
         self.press_on_empty(ui, &response, editor, out);
         self.collect_in_marquee(ui, (scale, rect), (track, keys));
         let tracks = &editor.scene().animation.tracks;

@@ -30,13 +30,13 @@ pub use self::overlay::Overlay;
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 pub use self::transport::{actions, clock};
-use super::commands::{Command, take_escape, with_key};
+use super::commands::{Command, take_escape};
+use super::menu_entry::on_click;
 use super::requests::UiRequests;
 use super::theme::{GRID, TRACK_LABEL};
 use crate::animate::paused_seconds;
 use crate::editor::Editor;
 use crate::scene::Animation;
-use crate::ui::hint::Hinted as _;
 
 /// Minimum length of the time axis, in seconds.
 const MIN_SECONDS: f64 = 4.0;
@@ -55,12 +55,8 @@ pub struct TimelinePanel {
     span: (f64, f64),
     /// The section that the user zoomed to, if not everything is shown.
     zoomed: Option<(f64, f64)>,
-    /// The document that this section belongs to.
-    document: u64,
     /// The UI frame in which the pointer was last over the panel.
     hovered_in: u64,
-    /// The UI frame in which the panel was last shown.
-    frame: u64,
     rows: KeyRows,
     graph: Graph,
     /// Cached duration of the pauses, with the animation it was computed for.
@@ -73,9 +69,7 @@ impl Default for TimelinePanel {
             shows_graph: true,
             span: (0.0, MIN_SECONDS),
             zoomed: None,
-            document: 0,
             hovered_in: 0,
-            frame: 0,
             rows: KeyRows::default(),
             graph: Graph::default(),
             paused: None,
@@ -97,12 +91,7 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             let _ = ui.selectable_label(true, "Timeline");
             let lab = ui.selectable_label(false, "Lab");
-            if lab
-                .hint(with_key(ui, "Speed against accuracy", &Command::Lab))
-                .clicked()
-            {
-                out.commands.push(Command::Lab);
-            }
+            on_click(ui, lab, ("Speed against accuracy", Command::Lab), out);
             ui.separator();
             transport::show(ui, editor, shown_fps, &mut self.shows_graph, out);
         });
@@ -121,11 +110,7 @@ impl TimelinePanel {
             return;
         }
         let end = shown_end(animation, editor.timeline().playhead);
-        self.zoomed = self
-            .zoomed
-            .filter(|(_, last)| self.document == editor.documents() && *last <= end * MAX_ZOOM_OUT);
-        self.document = editor.documents();
-        self.frame = ui.cumulative_frame_nr();
+        self.zoomed = self.zoomed.filter(|(_, last)| *last <= end * MAX_ZOOM_OUT);
         if self.zoomed.is_some() || !ui.input(|input| input.pointer.any_down()) {
             self.span = self.zoomed.unwrap_or((0.0, end));
         }
@@ -184,7 +169,7 @@ impl TimelinePanel {
         let at = ui.input(|input| input.pointer.hover_pos());
         let at = at.filter(|_| ui.rect_contains_pointer(area));
         let Some(at) = at else { return };
-        self.hovered_in = self.frame;
+        self.hovered_in = ui.cumulative_frame_nr();
         let (factor, moved, is_middle) = ui.input(|input| {
             let pointer = &input.pointer;
             (input.zoom_delta(), pointer.delta().x, pointer.middle_down())

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::strip::{dragged_keys, selection_after_click};
 use crate::editor::{Action, Edit, Editor};
-use crate::scene::{Camera, KeyId, Projection};
+use crate::scene::{Camera, KeyId, Projection, around};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{Palette, picture_palette};
 use crate::ui::tools::Screen;
@@ -179,8 +179,7 @@ impl Overlay {
 
     /// Diagonal of the flight's bounding box in world units; 1 if it is a point.
     fn extent(&self) -> f64 {
-        let points = self.ticks.iter().map(|(point, _)| (*point, *point));
-        let all = points.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let all = around(self.ticks.iter().map(|(point, _)| (*point, *point)));
         let extent = all.map_or(0.0, |(low, high)| (high - low).length());
         if extent > 0.0 { extent } else { 1.0 }
     }

@@ -1,6 +1,6 @@
 //! The ruler above the keys, with seconds, frames and the playhead.
 
-use egui::{Align2, FontId, PointerButton, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, FontId, PointerButton, Rect, Shape, Stroke, Ui, pos2, vec2};
 
 use super::scale::Scale;
 use super::strip::{KEY_HALF_WIDTH, TIME_FONT_SIZE, band};
@@ -19,7 +19,7 @@ const STEPS: [f64; 13] = [
 
 /// Shows seconds, frames and the playhead, which can be clicked and dragged to a time.
 pub fn show(ui: &mut Ui, scale: &Scale, editor: &Editor, out: &mut UiRequests) {
-    let (rect, response) = band(ui, scale, Sense::click_and_drag());
+    let (rect, response) = band(ui, scale);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Playhead"));
     let is_primary = response.clicked_by(PointerButton::Primary)
         || response.dragged_by(PointerButton::Primary)

@@ -12,12 +12,12 @@ pub const KEY_HALF_WIDTH: f32 = 5.0;
 pub const TIME_FONT_SIZE: f32 = 10.0;
 
 /// Allocates a strip along the time axis, with space for a label to its left. Returns its rectangle and response.
-pub fn band(ui: &mut Ui, scale: &Scale, sense: Sense) -> (Rect, Response) {
+pub fn band(ui: &mut Ui, scale: &Scale) -> (Rect, Response) {
     let (full_width, _) = ui.allocate_exact_size(vec2(ui.available_width(), TRACK), Sense::hover());
     let rect = Rect::from_x_y_ranges(scale.left..=scale.left + scale.width, full_width.y_range());
     let id = ui.scope_id().with(("band", full_width.top() as i32));
     // Widened a little, so that the first moment is easy to hit.
-    let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, sense);
+    let response = ui.interact(rect.expand2(vec2(GRID, 0.0)), id, Sense::click_and_drag());
     (rect, response)
 }
 

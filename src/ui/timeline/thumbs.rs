@@ -9,8 +9,8 @@ use crate::animate::shot;
 use crate::editor::Editor;
 use crate::image::Image;
 use crate::scene::{Animation, Scene};
-use crate::ui::commands::{Command, with_key};
-use crate::ui::hint::Hinted as _;
+use crate::ui::commands::Command;
+use crate::ui::menu_entry::on_click;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::{GRID, THUMB, palette};
 use crate::ui::upload::{paint, to_color_image};
@@ -150,11 +150,9 @@ impl Thumbs {
         let rect = shot_rect(view, size.x / size.y);
         paint(ui.painter(), texture, rect);
         let response = ui.interact(rect, Id::unique("shot"), Sense::click_and_drag());
+        let response = response.accessible_name("Shot");
         let words = "Click to look through the shot camera";
-        let response = response.hint(with_key(ui, words, &Command::LookThrough));
-        if response.accessible_name("Shot").clicked() {
-            out.commands.push(Command::LookThrough);
-        }
+        on_click(ui, response, (words, Command::LookThrough), out);
         let colors = palette(ui.ctx());
         let stroke = egui::Stroke::new(1.0, colors.accent);
         ui.painter()

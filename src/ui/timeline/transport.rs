@@ -12,6 +12,7 @@ use crate::ui::commands::{Command, with_key};
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::inspector::replaced_keys_message;
+use crate::ui::menu_entry::on_click;
 use crate::ui::number::{Field, drag_unlabelled};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
@@ -79,16 +80,13 @@ pub fn show(ui: &mut Ui, editor: &Editor, shown_fps: f64, graph: &mut bool, out:
     ui.separator();
     record_button(ui, editor, width >= MIN_WIDTH_FOR_TEXT, out);
     let words = "Set a key at the playhead from the current view, replacing one that is there";
-    let hint = with_key(ui, words, &Command::AddKey);
     let add_key = if width >= MIN_WIDTH_FOR_TEXT {
         Button::new("Add key")
     } else {
         Button::new(icons::text(icons::KEY))
     };
     let add_key = ui.add(add_key).accessible_name("Add key");
-    if add_key.hint(hint).clicked() {
-        out.commands.push(Command::AddKey);
-    }
+    on_click(ui, add_key, (words, Command::AddKey), out);
     if width >= MIN_WIDTH_WITHOUT_RATES {
         through_shot(ui, editor, out);
     }
@@ -150,22 +148,18 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let has_keys = !editor.scene().animation.keys.is_empty();
     let through = Button::selectable(editor.looks_through(), "Through shot");
+    let through = ui.add_enabled(has_keys, through);
     let words = "Enter or leave the shot camera";
-    let hint = with_key(ui, words, &Command::LookThrough);
-    if ui.add_enabled(has_keys, through).hint(hint).clicked() {
-        out.commands.push(Command::LookThrough);
-    }
+    on_click(ui, through, (words, Command::LookThrough), out);
 }
 
 fn record_button(ui: &mut Ui, editor: &Editor, has_words: bool, out: &mut UiRequests) {
     let accent = palette(ui.ctx()).accent;
     if let Some((samples, seconds)) = editor.timeline().recorded() {
         let stop = Button::new((icons::text(icons::STOP).color(accent), "Stop"));
-        let hint = with_key(ui, "Stop recording and make keys", &Command::StopRecording);
-        let stop = ui.add(stop).hint(hint);
-        if stop.accessible_name("Stop recording").clicked() {
-            out.commands.push(Command::StopRecording);
-        }
+        let stop = ui.add(stop).accessible_name("Stop recording");
+        let words = "Stop recording and make keys";
+        on_click(ui, stop, (words, Command::StopRecording), out);
         let text = format!("{samples} samples, {seconds:.1} s");
         ui.label(RichText::new(text).monospace().color(accent));
         return;
@@ -175,11 +169,9 @@ fn record_button(ui: &mut Ui, editor: &Editor, has_words: bool, out: &mut UiRequ
     } else {
         Button::new(icons::text(icons::RECORD))
     };
-    let hint = with_key(ui, "Record the flight of the camera", &Command::Record);
-    let record = ui.add(record).hint(hint);
-    if record.accessible_name("Record").clicked() {
-        out.commands.push(Command::Record);
-    }
+    let record = ui.add(record).accessible_name("Record");
+    let words = "Record the flight of the camera";
+    on_click(ui, record, (words, Command::Record), out);
 }
 
 /// Shows length, frame rate and playing speed; with their names, if they are below each other in the menu.
@@ -328,12 +320,11 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
     let added = places.len() + animation.all_keys().len();
-    let replaced = added.saturating_sub(changed.all_keys().len());
+    let message = replaced_keys_message(added, &changed).map(Action::Tell);
     let made = [
         Action::Edit(Edit::animation(changed, "Copy keys")),
         Action::Select(new.into()),
     ];
-    let message = replaced_keys_message(replaced).map(Action::Tell);
     made.into_iter().chain(message).collect()
 }
 

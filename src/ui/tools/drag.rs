@@ -126,7 +126,7 @@ impl Drag {
             let mut selected = editor.selection().clone();
             if !selected.has(item) {
                 selected = selected.picked(editor.scene(), &[item]);
-                out.actions.push(Action::Select(selected.clone()));
+                out.select(selected.clone());
             }
             let before = Movable::of(&selected, editor.shown());
             let grabbed = (before, selected.pivot(editor.shown())?);
@@ -143,7 +143,7 @@ impl Drag {
     /// The handle that is being dragged.
     pub fn handle(&self) -> Option<Handle> {
         match self {
-            Self::Grip(grip) => Some(grip.handle()),
+            Self::Grip(grip) => Some(grip.handle),
             _ => None,
         }
     }
@@ -194,7 +194,7 @@ impl Drag {
                 let found = found.items();
                 if !response.dragged() {
                     let items = before.items().iter().chain(found).copied();
-                    out.actions.push(Action::Select(Selection::all(items)));
+                    out.select(Selection::all(items));
                     return false;
                 }
                 show_marquee(view, marquee, (at, found.len()));

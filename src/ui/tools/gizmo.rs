@@ -94,13 +94,12 @@ fn sides(line: &[Pos2]) -> impl Iterator<Item = (Pos2, Pos2)> {
 }
 
 fn is_inside(corners: &[Pos2], at: Pos2) -> bool {
-    let side = |n: usize| {
-        let (a, b) = (corners[n], corners[(n + 1) % corners.len()]);
-        let (along, arm) = (b - a, at - a);
+    let mut sides = sides(corners).map(|(from, to)| {
+        let (along, arm) = (to - from, at - from);
         along.x * arm.y - along.y * arm.x > 0.0
-    };
-    let first = side(0);
-    (1..corners.len()).all(|n| side(n) == first)
+    });
+    let first = sides.next();
+    sides.all(|side| Some(side) == first)
 }
 
 /// A circle around an axis of unit length, on the screen.

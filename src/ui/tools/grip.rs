@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::gizmo::{ARROW_LENGTH, AXES, Handle, RING_RADIUS, label};
 use super::screen::Screen;
-use super::subject::{Movable, combine};
+use super::subject::Movable;
 use crate::editor::Edit;
 use crate::scene::{Disc, Plane, Shape, format_number};
 use crate::ui::number::parse_number;
@@ -20,7 +20,8 @@ const NEGLIGIBLE_SHARE: f64 = 1e-9;
 /// A handle that is being dragged.
 #[derive(Clone, Debug)]
 pub struct Grip {
-    handle: Handle,
+    /// The handle.
+    pub handle: Handle,
     /// The items as they were at the start.
     before: Vec<Movable>,
     /// The centre of rotation and scaling.
@@ -54,11 +55,7 @@ impl Grip {
     ) -> Option<Self> {
         let mut grip = Self {
             handle,
-            before,
-            middle,
-            grabbed_at: (at, middle),
-            typed: String::new(),
-            turned_degrees: Cell::default(),
+            ..Self::free((before, middle), at, middle)
         };
         grip.grabbed_at.1 = grip.pointed_at(screen, at)?;
         Some(grip)
@@ -94,11 +91,6 @@ impl Grip {
             }
             Some(_) => None,
         }
-    }
-
-    /// The handle that is being dragged.
-    pub fn handle(&self) -> Handle {
-        self.handle
     }
 
     /// The point in the scene that a screen position means for this handle.
@@ -177,7 +169,7 @@ impl Grip {
             }
             Handle::Radius => {
                 let typed = typed.filter(|radius| *radius > 0.0);
-                let radius = typed.map_or_else(|| self.radius(screen, pull.at).map(round), Some)?;
+                let radius = typed.or_else(|| self.radius(screen, pull.at).map(round))?;
                 let subject = self.before.first()?;
                 let edit = (radius > 0.0)
                     .then(|| subject.with_radius(radius))
@@ -186,11 +178,10 @@ impl Grip {
             }
             Handle::Size => {
                 let typed = typed.filter(|scale_factor| *scale_factor > 0.0);
-                let scale_factor = typed.map_or_else(|| self.scale_factor(screen, pull), Some)?;
-                Some((
-                    self.scale_all(scale_factor),
-                    format!("× {}", format_value(scale_factor)),
-                ))
+                let scale_factor = typed.or_else(|| self.scale_factor(screen, pull))?;
+                let words = format!("× {}", format_value(scale_factor));
+                let scaled = |subject: &Movable| subject.scaled(self.middle, scale_factor);
+                Some((self.edit_all("Resize", scaled), words))
             }
             Handle::Corner(corner) => {
                 let to = self.pointed_at(screen, pull.at)?;
@@ -205,36 +196,31 @@ impl Grip {
             }
             Handle::Normal => self.turn_normal(screen, pull),
             Handle::Turn(axis) => {
-                let degrees = typed.map_or_else(|| self.degrees(screen, axis, pull), Some)?;
-                let by = (AXES[axis].0, degrees);
-                let edits = self
-                    .before
-                    .iter()
-                    .map(|subject| subject.turned(self.middle, by));
-                let words = format!("{} {}°", AXES[axis].1, format_signed(degrees));
-                Some((combine(edits.collect(), "Rotate"), words))
+                let degrees = typed.or_else(|| self.degrees(screen, axis, pull))?;
+                let (direction, name) = AXES[axis];
+                let words = format!("{name} {}°", format_signed(degrees));
+                let turned = |subject: &Movable| subject.turned(self.middle, (direction, degrees));
+                Some((self.edit_all("Rotate", turned), words))
             }
         }
     }
 
     /// Moves all items so that [`Self::snap_point`] is at `target`.
     fn move_to(&self, target: DVec3) -> Option<Edit> {
-        let edits = match &self.before[..] {
-            [only] => vec![only.placed(target)],
-            all => {
-                let by = target - self.snap_point();
-                all.iter().map(|subject| subject.moved(by)).collect()
-            }
-        };
-        combine(edits, "Move")
+        if let [only] = &self.before[..] {
+            return Some(only.placed(target));
+        }
+        let by = target - self.snap_point();
+        self.edit_all("Move", |subject| subject.moved(by))
     }
 
-    fn scale_all(&self, scale_factor: f64) -> Option<Edit> {
-        let edits = self
-            .before
-            .iter()
-            .map(|subject| subject.scaled(self.middle, scale_factor));
-        combine(edits.collect(), "Resize")
+    /// Combines the edits of all items into one; the edit of a single item stays as it is.
+    fn edit_all(&self, verb: &str, edit: impl Fn(&Movable) -> Edit) -> Option<Edit> {
+        let mut edits: Vec<Edit> = self.before.iter().map(edit).collect();
+        match edits.len() {
+            0 | 1 => edits.pop(),
+            count => Some(Edit::Each(edits, format!("{verb} {count} items"))),
+        }
     }
 
     /// Ratio of the distances from the middle: of the current screen position to that of the grab.
@@ -359,11 +345,7 @@ mod tests {
         let ball = Movable::new(&scene, Item::object(0)).expect("a ball");
         let mut grip = Grip {
             handle: Handle::Radius,
-            before: vec![ball],
-            middle: DVec3::ZERO,
-            grabbed_at: (Pos2::ZERO, DVec3::ZERO),
-            typed: String::new(),
-            turned_degrees: Cell::default(),
+            ..Grip::free((vec![ball], DVec3::ZERO), Pos2::ZERO, DVec3::ZERO)
         };
         let mut typing_error = |typed: &str| {
             grip.typed = typed.to_owned();

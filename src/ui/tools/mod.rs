@@ -6,9 +6,9 @@ mod outline;
 
 mod seen_objects;
 
-mod navigate;
-
 mod subject;
+
+mod navigate;
 
 mod gizmo;
 
@@ -17,6 +17,7 @@ mod grip;
 mod drag;
 
 pub use gizmo::label;
+pub use navigate::{framing_camera, is_selection_out_of_view, looking_along, projected};
 pub use screen::Screen;
 
 use egui::{CursorIcon, Modifiers, PointerButton, Popup, Pos2, Rect, Response, Ui};
@@ -24,9 +25,8 @@ use glam::DVec3;
 
 use self::drag::{Drag, Pane};
 use self::gizmo::{Handle, handle_at};
-use self::navigate::{dollied, looking_along, projected};
+use self::navigate::dollied;
 use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question};
-use self::subject::Movable;
 use super::commands::Command;
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::pack_drag::{assign_pack_edit, dropped_pack};
@@ -34,15 +34,12 @@ use super::requests::UiRequests;
 use super::viewport::Place;
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
 use crate::image::{ObjectMap, Thing};
-use crate::scene::{Camera, Framing, Projection, around};
 use crate::words::shortened;
 
 /// Seconds that the pointer has to rest before the name of what it hovers is shown.
 const HOVER_DELAY: f32 = 0.3;
 /// Maximum number of letters of a name beside the pointer.
 const MAX_NAME_LETTERS: usize = 32;
-/// Minimum size of what is framed, as a fraction of the whole scene.
-const MIN_FRAMED_SHARE: f64 = 0.02;
 /// Maximum time between the two clicks of a double click, in seconds.
 const MAX_DOUBLE_CLICK_SECONDS: f64 = 1.0;
 /// Maximum distance between two clicks that count as being at the same place, in points.
@@ -62,8 +59,6 @@ pub struct Tools {
     /// For selecting what is behind other things: the position, the revision of the picture, and the things found
     /// there so far, front to back.
     behind: Option<(Pos2, u64, Vec<Thing>)>,
-    /// The document that this state belongs to.
-    document: u64,
     /// The position at which the context menu was opened.
     menu_at: Option<Pos2>,
     /// Whether it is still unknown what is at that position.
@@ -124,10 +119,6 @@ impl Tools {
         let Some(screen) = Screen::new(&editor.shown().camera, place.rect) else {
             return;
         };
-        if self.document != editor.documents() {
-            self.rest();
-            self.document = editor.documents();
-        }
         self.view = Some(place.rect);
         let view = Pane {
             editor,
@@ -221,7 +212,7 @@ impl Tools {
                 && !view.editor.selection().has(item)
             {
                 let selected = view.editor.selection().picked(view.editor.scene(), &[item]);
-                out.actions.push(Action::Select(selected));
+                out.select(selected);
             }
         }
         let menu = response.context_menu(|ui| {
@@ -242,12 +233,8 @@ impl Tools {
             }
             ui.separator();
             entry(ui, "Paste", Command::RequestPaste, out);
-            for (text, command) in [
-                ("Frame selection", Command::FrameSelected),
-                ("Frame everything", Command::FrameAll),
-            ] {
-                entry(ui, text, command, out);
-            }
+            entry(ui, "Frame selection", Command::FrameSelected, out);
+            entry(ui, "Frame everything", Command::FrameAll, out);
         });
         // Once the menu is closed, its item no longer matters.
         self.menu_waits &= menu.is_some();
@@ -358,7 +345,7 @@ impl Tools {
             (Some(item), false) => before.picked(scene, &[item]),
             (None, false) => Selection::default(),
         };
-        out.actions.push(Action::Select(selected));
+        out.select(selected);
     }
 
     fn select_behind(&mut self, view: &Pane, at: Pos2, seen: Option<Thing>, out: &mut UiRequests) {
@@ -373,68 +360,4 @@ impl Tools {
             .push(question(view.editor, view.place, before.clone()));
         self.behind = Some((at, revision, before));
     }
-}
-
-/// The camera that fits everything into the picture, or everything that is selected.
-pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
-    let scene = editor.shown();
-    let selected = Movable::of(editor.selection(), scene);
-    let bounds = around(selected.iter().filter_map(Movable::bounds));
-    let all = scene.surroundings();
-    let (low, high) = bounds.filter(|_| only_selected).or(all)?;
-    // A light without a marker is a point: show some of its surroundings.
-    let size = all.map_or(0.0, |(low, high)| (high - low).length());
-    let margin = match (low != high, size > 0.0) {
-        (true, _) => 0.0,
-        (false, true) => size * MIN_FRAMED_SHARE,
-        (false, false) => 1.0,
-    };
-    let margin = DVec3::splat(margin);
-    let middle = low * 0.5 + high * 0.5;
-    let bounds = (low.min(middle - margin), high.max(middle + margin));
-    Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
-}
-
-/// Returns whether the whole selection is certainly out of view: the bounding sphere of each item is beside the
-/// picture or behind the camera.
-pub fn is_selection_out_of_view(editor: &Editor) -> bool {
-    let scene = editor.shown();
-    let selected = Movable::of(editor.selection(), scene);
-    let Some(framing) = scene.camera.framing() else {
-        return false;
-    };
-    let sides = sides(&framing, scene.render.aspect_ratio());
-    let is_out = |(low, high): (DVec3, DVec3)| {
-        let (middle, radius) = (low.midpoint(high), (high - low).length() / 2.0);
-        let mut sides = sides.iter();
-        sides.any(|(on, inwards)| (middle - *on).dot(*inwards) < -radius)
-    };
-    let mut bounds = selected.iter().map(Movable::bounds);
-    !selected.is_empty() && bounds.all(|bounds| bounds.is_some_and(is_out))
-}
-
-/// The planes that bound the visible volume, through the four sides of the picture and through the camera; each as
-/// a point on it and the unit normal that points inwards.
-fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
-    let (x, y) = (aspect / 2.0, 0.5);
-    let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|corner| framing.ray(corner));
-    let (middle, forward) = framing.ray([0.0, 0.0]);
-    let side = |n: usize| {
-        let ((a, direction), (b, next_direction)) = (corners[n], corners[(n + 1) % 4]);
-        let normal = direction.cross(b + next_direction - a).normalize_or_zero();
-        let is_inwards = normal.dot(middle + forward - a) > 0.0;
-        (a, if is_inwards { normal } else { -normal })
-    };
-    [side(0), side(1), side(2), side(3), (middle, forward)]
-}
-
-/// The camera that looks along a direction at the selection, or at everything.
-pub fn axis_camera(editor: &Editor, direction: DVec3) -> Camera {
-    looking_along(&editor.shown().camera, editor.middle(), direction)
-}
-
-/// The camera with another projection, in which the middle of the scene appears about as large as before.
-pub fn projected_camera(editor: &Editor, projection: Projection) -> Camera {
-    let scene = editor.shown();
-    projected(&scene.camera, scene.middle(), projection)
 }

@@ -4,7 +4,9 @@ use egui::Vec2;
 use glam::DVec3;
 
 use super::screen::Screen;
-use crate::scene::{Camera, Projection};
+use super::subject::Movable;
+use crate::editor::Editor;
+use crate::scene::{Camera, Framing, Projection, around};
 
 /// Radians per point of mouse movement.
 const ORBIT: f64 = 0.008;
@@ -12,6 +14,8 @@ const ORBIT: f64 = 0.008;
 const DOLLY: f64 = 0.003;
 /// Factor by which a change of projection may change the apparent size.
 const MAX_SIZE_CHANGE: f64 = 3.0;
+/// Minimum size of what is framed, as a fraction of the whole scene.
+const MIN_FRAMED_SHARE: f64 = 0.02;
 
 /// Rotation of an orbit, to the right and upwards, for a mouse movement: things follow the pointer.
 pub fn orbit_angles(moved: Vec2) -> (f64, f64) {
@@ -80,6 +84,59 @@ pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) 
         Projection::Perspective => next.position += forward * (depth - equal_size_depth),
     }
     next
+}
+
+/// The camera that fits everything into the picture, or everything that is selected.
+pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
+    let scene = editor.shown();
+    let selected = Movable::of(editor.selection(), scene);
+    let bounds = around(selected.iter().filter_map(Movable::bounds));
+    let all = scene.surroundings();
+    let (low, high) = bounds.filter(|_| only_selected).or(all)?;
+    // A light without a marker is a point: show some of its surroundings.
+    let size = all.map_or(0.0, |(low, high)| (high - low).length());
+    let margin = match (low != high, size > 0.0) {
+        (true, _) => 0.0,
+        (false, true) => size * MIN_FRAMED_SHARE,
+        (false, false) => 1.0,
+    };
+    let margin = DVec3::splat(margin);
+    let middle = low * 0.5 + high * 0.5;
+    let bounds = (low.min(middle - margin), high.max(middle + margin));
+    Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
+}
+
+/// Returns whether the whole selection is certainly out of view: the bounding sphere of each item is beside the
+/// picture or behind the camera.
+pub fn is_selection_out_of_view(editor: &Editor) -> bool {
+    let scene = editor.shown();
+    let selected = Movable::of(editor.selection(), scene);
+    let Some(framing) = scene.camera.framing() else {
+        return false;
+    };
+    let sides = sides(&framing, scene.render.aspect_ratio());
+    let is_out = |(low, high): (DVec3, DVec3)| {
+        let (middle, radius) = (low.midpoint(high), (high - low).length() / 2.0);
+        let mut sides = sides.iter();
+        sides.any(|(on, inwards)| (middle - *on).dot(*inwards) < -radius)
+    };
+    let mut bounds = selected.iter().map(Movable::bounds);
+    !selected.is_empty() && bounds.all(|bounds| bounds.is_some_and(is_out))
+}
+
+/// The planes that bound the visible volume, through the four sides of the picture and through the camera; each as
+/// a point on it and the unit normal that points inwards.
+fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
+    let (x, y) = (aspect / 2.0, 0.5);
+    let corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(|corner| framing.ray(corner));
+    let (middle, forward) = framing.ray([0.0, 0.0]);
+    let side = |n: usize| {
+        let ((a, direction), (b, next_direction)) = (corners[n], corners[(n + 1) % 4]);
+        let normal = direction.cross(b + next_direction - a).normalize_or_zero();
+        let is_inwards = normal.dot(middle + forward - a) > 0.0;
+        (a, if is_inwards { normal } else { -normal })
+    };
+    [side(0), side(1), side(2), side(3), (middle, forward)]
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use crate::image::{ObjectMap, Thing};
 
 /// Width of an outline, in pixels.
 const LINE_WIDTH: usize = 2;
-/// Width of the dark edge around the outline, in pixels, which keeps it visible on any picture.
-const HALO_WIDTH: usize = 1;
+/// Width of the outline with the dark edge around it, in pixels, which keeps it visible on any picture.
+const REACH: usize = LINE_WIDTH + 1;
 
 /// The part of the picture that contains an outline.
 #[derive(Debug)]
@@ -37,9 +37,8 @@ pub fn outline(
     seen: impl Fn(Thing) -> PixelObject,
 ) -> Option<OutlineImage> {
     let (objects, columns, rows) = silhouette(map, seen)?;
-    let reach = LINE_WIDTH + HALO_WIDTH;
-    let columns = columns.start.saturating_sub(reach)..(columns.end + reach).min(map.width());
-    let rows = rows.start.saturating_sub(reach)..(rows.end + reach).min(map.height());
+    let columns = columns.start.saturating_sub(REACH)..(columns.end + REACH).min(map.width());
+    let rows = rows.start.saturating_sub(REACH)..(rows.end + REACH).min(map.height());
     let (width, size) = (map.width(), [columns.len(), rows.len()]);
     let mut distances = vec![usize::MAX; size[0] * size[1]];
     for row in rows.clone() {
@@ -58,15 +57,15 @@ pub fn outline(
     let pixels = rows.clone().flat_map(|row| {
         let objects = &objects[row * width + columns.start..row * width + columns.end];
         let distances = &distances[(row - rows.start) * size[0]..][..size[0]];
-        objects.iter().zip(distances).map(move |(seen, &distance)| {
-            let far = LINE_WIDTH + HALO_WIDTH;
-            match distance {
+        objects
+            .iter()
+            .zip(distances)
+            .map(move |(seen, &distance)| match distance {
                 _ if seen.is_wanted => Color32::TRANSPARENT,
                 distance if distance <= LINE_WIDTH * LINE_WIDTH => color,
-                distance if distance <= far * far => halo,
+                distance if distance <= REACH * REACH => halo,
                 _ => Color32::TRANSPARENT,
-            }
-        })
+            })
     });
     Some(OutlineImage {
         corner: [columns.start, rows.start],
@@ -123,9 +122,8 @@ fn spread(
     at: [usize; 2],
     is_free: impl Fn([usize; 2]) -> bool,
 ) {
-    let reach = LINE_WIDTH + HALO_WIDTH;
     let around =
-        |middle: usize, count: usize| middle.saturating_sub(reach)..(middle + reach + 1).min(count);
+        |middle: usize, count: usize| middle.saturating_sub(REACH)..(middle + REACH + 1).min(count);
     for row in around(at[1], size[1]) {
         for column in around(at[0], size[0]) {
             if !is_free([column, row]) {

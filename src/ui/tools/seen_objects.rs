@@ -100,12 +100,10 @@ impl SeenObjects {
 
     /// Draws outlines around the selection and around what is hovered.
     pub fn show(&mut self, painter: &Painter, editor: &Editor, view: Rect, mut hovered: Vec<Item>) {
-        let Some((revision, map)) = &self.map else {
+        let current = |(revision, _): &&(u64, _)| *revision == editor.shown_revision();
+        let Some((revision, map)) = self.map.as_ref().filter(current) else {
             return;
         };
-        if *revision != editor.shown_revision() {
-            return;
-        }
         let colors = palette(painter.ctx());
         let selected = editor.selection().items().to_vec();
         let selected_set: HashSet<&Item> = selected.iter().collect();

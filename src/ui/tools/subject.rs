@@ -158,12 +158,3 @@ impl Movable {
         }
     }
 }
-
-/// Combines edits into one; a single edit stays as it is.
-pub fn combine(mut edits: Vec<Edit>, verb: &str) -> Option<Edit> {
-    match edits.len() {
-        0 => None,
-        1 => edits.pop(),
-        count => Some(Edit::Each(edits, format!("{verb} {count} items"))),
-    }
-}
