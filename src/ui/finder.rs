@@ -17,7 +17,7 @@ use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use super::theme::{GRID, ROW};
 use crate::animate::{Preset, Retime};
-use crate::editor::{Editor, Item, ItemKind, Selection};
+use crate::editor::{Editor, Item, Selection};
 use crate::scene::{Aspect, EXAMPLES};
 
 /// Width of the window in points.
@@ -315,13 +315,11 @@ fn choices<'a>(
     all.chain(recent)
 }
 
-/// Returns the color pack of the selected object.
+/// Returns the selected color pack, or that of the selected object or marker.
 fn pack_of_selected(editor: &Editor) -> Option<Item> {
     let (scene, item) = (editor.scene(), editor.selection().item()?);
-    let worn = item
-        .color_pack(scene)
-        .filter(|_| item.kind == ItemKind::Object)?;
-    scene.color_packs.get_index_of(worn).map(Item::pack)
+    let name = item.color_pack(scene)?;
+    scene.color_packs.get_index_of(name).map(Item::pack)
 }
 
 /// Yields the entries at the top of the outliner and the settings of the picture, each with its other names.

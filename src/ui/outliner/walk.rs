@@ -136,7 +136,8 @@ impl Listed<'_> {
     /// The row of an item, or of its group if that is folded.
     fn row_of_item(&self, scene: &Scene, item: Item) -> Option<usize> {
         self.lines.row_of(item).or_else(|| {
-            let object = scene.objects.get(item.index)?;
+            let is_object = item.kind == ItemKind::Object;
+            let object = scene.objects.get(item.index).filter(|_| is_object)?;
             self.row_of_group(&object.group)
         })
     }
@@ -177,5 +178,33 @@ impl Listed<'_> {
     /// Returns whether a row's items are the selection.
     fn is_selected(&self, editor: &Editor, row: usize) -> bool {
         self.selection_of(row).as_ref() == Some(editor.selection())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lines::{Entries, Groups};
+    use super::*;
+
+    #[test]
+    fn a_light_that_is_not_listed_has_no_row_among_the_objects() {
+        let mut scene = Scene::demo();
+        scene.objects[0].group = "pair".to_owned();
+        let (mut groups, mut folded) = (Groups::default(), vec!["pair".to_owned()]);
+        groups.update(&scene.objects, &mut folded);
+        let lines = Lines([
+            (ItemKind::Light, 2, Entries::All(0)),
+            (ItemKind::Object, 9, Entries::Grouped(&groups)),
+            (ItemKind::Pack, 5, Entries::All(5)),
+        ]);
+        let listed = Listed {
+            lines: &lines,
+            groups: &groups.all,
+            marks: &[],
+        };
+        let group = listed.row_of_group("pair");
+        assert!(group.is_some());
+        assert_eq!(listed.row_of_item(&scene, Item::object(0)), group);
+        assert_eq!(listed.row_of_item(&scene, Item::light(0)), None);
     }
 }
