@@ -5,7 +5,7 @@ use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Text};
 use indexmap::IndexMap;
 
 use super::super::theme::{GRID, palette};
-use super::axes::{decades, plain};
+use super::axes::{GRID_FADE, decades, plain};
 use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, RenderMethod};
@@ -66,6 +66,8 @@ fn show(ui: &mut Ui, growth: &Growth) {
         .x_grid_spacer(|input| decades(&input))
         .y_grid_spacer(|input| decades(&input))
         .y_axis_min_width(48.0)
+        .grid_spacing(GRID_FADE)
+        .show_background(false)
         .set_margin_fraction(egui::vec2(0.06, 0.1))
         .show(ui, |plot| {
             let ends = lines.values().filter_map(|(_, points)| points.last());

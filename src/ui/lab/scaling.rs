@@ -4,7 +4,7 @@ use egui::Ui;
 use egui_plot::{Corner, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::super::theme::{GRID, palette};
-use super::axes::plain;
+use super::axes::{GRID_FADE, plain};
 use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{PictureLook, SharedPicture};
@@ -57,6 +57,8 @@ fn show(ui: &mut Ui, pictures: &[SharedPicture]) {
         .x_axis_formatter(plain)
         .x_grid_spacer(marks)
         .y_axis_min_width(48.0)
+        .grid_spacing(GRID_FADE)
+        .show_background(false)
         .include_y(0.0)
         .include_y(105.0)
         .set_margin_fraction(egui::vec2(0.06, 0.0))
