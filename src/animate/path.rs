@@ -100,28 +100,18 @@ impl CameraPath {
     /// Returns the camera at `time` in seconds; before the first and after the last key, it is that of the key.
     /// `None` without keys. At the time of a key, the result is exactly that key's camera.
     pub fn at(&self, time: f64) -> Option<Camera> {
-        let after = self.keys.partition_point(|key| key.time <= time);
-        let Some(i) = after.checked_sub(1) else {
-            return self.keys.first().map(|key| key.value.clone());
+        let (i, along) = segment_at(&self.keys, time)?;
+        let Some(along) = along else {
+            return Some(self.keys[i].value.clone());
         };
-        let from = &self.keys[i];
-        let Some(to) = self.keys.get(i + 1).filter(|_| time > from.time) else {
-            return Some(from.value.clone());
-        };
-        let along = eased(from.easing, (time - from.time) / (to.time - from.time));
-        let camera = match (from.interpolation, self.smooth_segments[i]) {
-            (Interpolation::Hold, _) if to.time - time < SAME_TIME => to.value.clone(),
-            (Interpolation::Hold, _) => from.value.clone(),
-            (_, Some((run, index))) => self.smooth_camera(i, &self.runs[run], index, along),
-            (Interpolation::Orbit { around }, _) => {
-                let position = orbit(around, from.value.position, to.value.position, along);
-                Camera {
-                    position,
-                    ..self.linear_camera(i, along)
-                }
-            }
-            (Interpolation::Linear | Interpolation::Smooth, _) => self.linear_camera(i, along),
-        };
+        if let Some((run, index)) = self.smooth_segments[i] {
+            return Some(self.smooth_camera(i, &self.runs[run], index, along));
+        }
+        let mut camera = self.linear_camera(i, along);
+        if let Interpolation::Orbit { around } = self.keys[i].interpolation {
+            let [from, to] = [i, i + 1].map(|key| self.keys[key].value.position);
+            camera.position = orbit(around, from, to, along);
+        }
         Some(camera)
     }
 
@@ -182,8 +172,26 @@ impl CameraPath {
     }
 }
 
+/// Returns the index of the key whose value is shown at `time` in seconds: before the first and after the last key, it
+/// is that key. Between two values, it is the first key, with the share of the path covered to the next one. `None`
+/// without keys.
+pub(super) fn segment_at<T>(keys: &[Key<T>], time: f64) -> Option<(usize, Option<f64>)> {
+    let after = keys.partition_point(|key| key.time <= time);
+    let i = after.saturating_sub(1);
+    let from = keys.get(i)?;
+    let Some(to) = keys.get(i + 1).filter(|_| time > from.time) else {
+        return Some((i, None));
+    };
+    if from.interpolation == Interpolation::Hold {
+        let is_next = to.time - time < SAME_TIME;
+        return Some((i + usize::from(is_next), None));
+    }
+    let along = (time - from.time) / (to.time - from.time);
+    Some((i, Some(eased(from.easing, along))))
+}
+
 /// Returns the share of the path covered after a share `along` of the time.
-pub(super) fn eased(easing: Easing, along: f64) -> f64 {
+fn eased(easing: Easing, along: f64) -> f64 {
     match easing {
         Easing::Even => along,
         Easing::In => along * along,
