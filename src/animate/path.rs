@@ -1,6 +1,7 @@
 //! The camera as a function of time.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -18,7 +19,7 @@ pub struct CameraPath {
     /// Yaw, pitch and roll of the keys, each with the full turns that make it nearest to the one before, so that
     /// the camera never turns the longer way.
     angles: Vec<Orientation>,
-    /// For each smooth segment, the index of its run and its index in that run; `None` for other segments.
+    /// For each key that begins a smooth segment, the index of its run and its index in that run.
     smooth_segments: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
 }
@@ -45,30 +46,25 @@ impl CameraPath {
         let mut path = Self {
             keys: keys.to_vec(),
             angles,
-            smooth_segments: vec![None; keys.len().saturating_sub(1)],
+            smooth_segments: Vec::new(),
             runs: Vec::new(),
         };
-        let is_smooth = |i: usize| keys[i].interpolation == Interpolation::Smooth;
-        let mut start = 0;
-        while start + 1 < keys.len() {
-            let mut end = start;
-            while end + 1 < keys.len() && is_smooth(end) {
-                path.smooth_segments[end] = Some((path.runs.len(), end - start));
-                end += 1;
+        for run in keys.chunk_by(|key, _| key.interpolation == Interpolation::Smooth) {
+            let (start, number) = (path.smooth_segments.len(), path.runs.len());
+            let segments = (1..run.len()).map(|end| Some((number, end - 1)));
+            path.smooth_segments.extend(segments.chain([None]));
+            if run.len() > 1 {
+                path.runs.push(path.run(start..start + run.len()));
             }
-            if end > start {
-                path.runs.push(path.run(start, end));
-            }
-            start = end.max(start + 1);
         }
         path
     }
 
-    fn run(&self, start: usize, end: usize) -> Run {
-        let keys = &self.keys[start..=end];
-        let angles = &self.angles[start..=end];
+    fn run(&self, range: Range<usize>) -> Run {
+        let keys = &self.keys[range.clone()];
+        let angles = &self.angles[range];
         // Only a flight that is a single run from start to end can be closed.
-        let is_whole = start == 0 && end + 1 == self.keys.len();
+        let is_whole = keys.len() == self.keys.len();
         let closing = if is_whole && is_closed(&keys[0].value, &keys[keys.len() - 1].value) {
             Closing::Closed
         } else {
