@@ -171,13 +171,14 @@ impl Document {
 
     fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let refuse_problem =
+            |Problem { path, sentence }| refuse(name, text, locate(text, &path), sentence);
         if let Some(version) = claimed_version(text).filter(|&version| version > VERSION) {
-            let problem = check(&Scene {
+            let newer = Scene {
                 version,
                 ..Scene::empty()
-            })
-            .err();
-            return Err(refuse_problem(name, text, problem));
+            };
+            check(&newer).map_err(refuse_problem)?;
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
             let offset = offset_of(text, error.span.start.line, error.span.start.col);
@@ -201,13 +202,11 @@ impl Document {
             let prefix = if is_end { "the file ends here; " } else { "" };
             refuse(name, text, at, format!("{prefix}{sentence}"))
         })?;
-        match check(&scene) {
-            Ok(()) => Ok(Self {
-                header: header(text).to_owned(),
-                scene,
-            }),
-            Err(problem) => Err(refuse_problem(name, text, Some(problem))),
-        }
+        check(&scene).map_err(refuse_problem)?;
+        Ok(Self {
+            header: header(text).to_owned(),
+            scene,
+        })
     }
 
     /// Creates a document without a header.
@@ -351,14 +350,6 @@ fn options() -> ron::Options {
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)
         .with_recursion_limit(MAX_DEPTH)
-}
-
-fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneError {
-    let Problem { path, sentence } = problem.unwrap_or(Problem {
-        path: Vec::new(),
-        sentence: "not a scene".to_owned(),
-    });
-    refuse(name, text, locate(text, &path), sentence)
 }
 
 /// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports
