@@ -1,6 +1,6 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use crate::scene::{
 use crate::words::{counted, listed};
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
-use super::arrange::{Arrangement, arrange, group};
+use super::arrange::{Arrangement, arrange, group, move_within};
 use super::clipboard::paste;
 use super::item::{Item, ItemKind};
 
@@ -400,7 +400,9 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     let count = kind.count(scene);
     let exists = |item: &&Item| item.kind == kind && item.index < count;
     let moved = items.iter().filter(exists).map(|item| item.index);
-    let moved: BTreeSet<usize> = moved.collect();
+    let mut moved: Vec<usize> = moved.collect();
+    moved.sort_unstable();
+    moved.dedup();
     let to = to.min(count - moved.len());
     match kind {
         ItemKind::Object => move_within(&mut scene.objects, &moved, to),
@@ -414,21 +416,12 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
             }
         }
     }
-    let old_indices: Vec<usize> = moved.into_iter().collect();
     let moved_item = |item: &Item| {
-        let rank = old_indices.binary_search(&item.index).ok()?;
+        let rank = moved.binary_search(&item.index).ok()?;
         Some(Item {
             kind,
             index: to + rank,
         })
     };
     items.iter().filter(exists).filter_map(moved_item).collect()
-}
-
-/// Takes out the items at these indices and inserts them again before the one that is at index `to` by then.
-fn move_within<T: Clone>(list: &mut List<T>, indices: &BTreeSet<usize>, to: usize) {
-    let taken = indices.iter().rev().map(|index| list.remove(*index));
-    for item in taken.collect::<Vec<_>>() {
-        list.insert(to, item);
-    }
 }
