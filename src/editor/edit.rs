@@ -201,6 +201,10 @@ impl Edit {
     /// The name of the step in the undo history.
     pub fn label(&self, scene: &Scene) -> String {
         let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();
+        let names = |items: &[Item]| match items {
+            [item] => name(*item),
+            _ => format!("{} items", items.len()),
+        };
         match self {
             Self::Camera(_, field) => format!("Camera: {field}"),
             Self::Background(_) => "Background".to_owned(),
@@ -222,18 +226,12 @@ impl Edit {
             Self::Rename(item, to) if to.is_empty() => format!("Rename {}", name(*item)),
             Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
             Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
-            Self::Delete(items) => match items[..] {
-                [item] => format!("Delete {}", name(item)),
-                _ => format!("Delete {} items", items.len()),
-            },
-            Self::Move(items, _) => match items[..] {
-                [item] => format!("Move {}", name(item)),
-                _ => format!("Move {} items", items.len()),
-            },
-            Self::Arrange(arrangement) => match arrangement.objects[..] {
-                [one] => format!("Move {}", name(Item::object(one))),
-                _ => format!("Move {} items", arrangement.objects.len()),
-            },
+            Self::Delete(items) => format!("Delete {}", names(items)),
+            Self::Move(items, _) => format!("Move {}", names(items)),
+            Self::Arrange(arrangement) => {
+                let objects = arrangement.objects.iter().copied().map(Item::object);
+                format!("Move {}", names(&objects.collect::<Vec<_>>()))
+            }
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
