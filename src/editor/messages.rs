@@ -13,8 +13,6 @@ use crate::words::{counted, listed};
 const EDIT: &str = "edit";
 /// Value of [`Message::about`] for messages about missing meshes.
 const MESHES: &str = "meshes";
-/// Value of [`Message::about`] for messages about meshes whose files are broken.
-const BROKEN: &str = "broken meshes";
 
 impl Editor {
     fn push_message(&mut self, is_error: bool, about: &'static str, text: String) {
@@ -86,17 +84,6 @@ impl Editor {
         let name = &self.scene.objects[index].name;
         let text = format!("{name:?} is not in the picture: {why}{more}");
         self.report_error_in(MESHES, text);
-    }
-
-    /// Reports that another program has overwritten a mesh file with something that is no mesh.
-    pub(super) fn report_broken_mesh(&mut self, why: &str) {
-        let text = format!("{why}; the version read before is kept and saved with the scene");
-        self.report_error_in(BROKEN, text);
-    }
-
-    /// Dismisses the message about broken mesh files: one of them can be read again.
-    pub(super) fn dismiss_broken_meshes(&mut self) {
-        self.begin(BROKEN);
     }
 
     /// Returns a message about what is lost by a step named `label` that deletes things, or joins or splits the

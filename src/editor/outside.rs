@@ -9,6 +9,9 @@ use super::own_file::OwnFile;
 use crate::files::{Stamp, is_same_file};
 use crate::scene::{Document, Leftover, MeshSource, Scene};
 
+/// Value of `Message::about` for messages about meshes whose files are broken.
+const BROKEN: &str = "broken meshes";
+
 impl Editor {
     /// Opens unsaved work that another run of the program left behind. If others have written its file since, the
     /// user is asked, as for any change from outside.
@@ -95,7 +98,8 @@ impl Editor {
             self.reread.push(read);
         }
         if self.broken.len() < before {
-            self.dismiss_broken_meshes();
+            // One of them can be read again.
+            self.begin(BROKEN);
         }
         let scene = self.refreshed(&self.scene);
         if Arc::ptr_eq(&scene, &self.scene) {
@@ -124,11 +128,13 @@ impl Editor {
         self.own_file != OwnFile::Whole || !self.scene.files_in_use(&self.broken).is_empty()
     }
 
+    /// Notes that another program has overwritten a mesh file with something that is no mesh.
     fn note_broken_mesh(&mut self, full: PathBuf, why: &str) {
         let one = BTreeSet::from([full]);
         if !self.scene.files_in_use(&one).is_empty() {
             self.broken.extend(one);
-            self.report_broken_mesh(why);
+            let text = format!("{why}; the version read before is kept and saved with the scene");
+            self.report_error_in(BROKEN, text);
         }
     }
 
