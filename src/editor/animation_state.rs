@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::edit::Replaced;
-use super::timeline::{REFERENCE_HEIGHT, Timeline, ViewState};
+use super::timeline::{REFERENCE_HEIGHT, Timeline};
 use crate::animate::{CameraPath, Landmark, WorstDeviation, ends_of, pose, shot, worst_deviation};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
@@ -171,11 +171,6 @@ impl AnimationState {
         self.timeline.is_playing &= !self.timeline.wants_shot;
         self.timeline.wants_shot = false;
         self.timeline.is_flown = true;
-    }
-
-    /// On undo or redo of a step that leads to the scene `target`: restores the view from `before` that step.
-    pub fn restore_view(&mut self, before: ViewState, target: &Scene) {
-        self.timeline.restore_view(before, &self.scene, target);
     }
 
     /// Updates the shown scene after a change of the scene, the time or the camera that is looked through.
