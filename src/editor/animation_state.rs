@@ -213,9 +213,8 @@ impl AnimationState {
             let original = scene.objects.get(index);
             if let Some((shown, original)) = shown.zip(original)
                 && shown.shape != original.shape
-                && let Some(object) = posed.objects.get_mut(index)
             {
-                object.shape.clone_from(&shown.shape);
+                posed.objects[index].shape.clone_from(&shown.shape);
             }
         }
         posed
@@ -283,8 +282,7 @@ fn restore_shape(
     if next.objects[next_index].shape != shown.objects[shown_index].shape {
         return false;
     }
-    if let Some(object) = next.objects.get_mut(next_index) {
-        object.shape.clone_from(&scene.objects[scene_index].shape);
-    }
+    let own = &scene.objects[scene_index].shape;
+    next.objects[next_index].shape.clone_from(own);
     true
 }

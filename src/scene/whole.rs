@@ -304,10 +304,8 @@ impl Scene {
             let Shape::Mesh(mesh) = &self.objects[index].shape else {
                 continue;
             };
-            if let Some(new) = change(mesh)
-                && let Some(object) = self.objects.get_mut(index)
-            {
-                object.shape = new.into();
+            if let Some(new) = change(mesh) {
+                self.objects[index].shape = new.into();
             }
         }
     }
