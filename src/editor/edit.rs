@@ -265,7 +265,7 @@ impl Edit {
             Self::AddObject(name, shape) => return Ok(vec![add_object(scene, name, shape)]),
             Self::Import(parts) => return Ok(vec![Item::object(scene.add_parts(parts))]),
             Self::Join(joined) => {
-                return Ok(scene.join(joined).map(Item::object).into_iter().collect());
+                return Ok(scene.join(&joined).map(Item::object).into_iter().collect());
             }
             Self::Paste(pasted, _) => return Ok(paste(scene, &pasted)),
             Self::Separate(index) => {
