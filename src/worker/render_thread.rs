@@ -184,7 +184,6 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
 /// Puts an export back into the queue for its next frame, or notes how it ended. An export that is no longer wanted
 /// is dropped.
 fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: Option<ExportStep>) {
-    let is_going = matches!(step, Some(ExportStep::Going | ExportStep::Stopped));
     let ended = match step {
         Some(ExportStep::Going | ExportStep::Stopped) => None,
         Some(ExportStep::Done) => Some(exporting.finish().map(|_| ()).map_err(|e| e.to_string())),
@@ -198,7 +197,7 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
     let mut outbox = shared.outbox();
     let state = outbox.exports.iter_mut().find(|state| state.id == id);
     let job = Job::Export(id, exporting);
-    let stopped = Some(job).filter(|_| is_going && state.is_some());
+    let stopped = Some(job).filter(|_| ended.is_none() && state.is_some());
     let running = mailbox.finish(Crew::Patient, stopped);
     let spent = running.map_or(Duration::ZERO, |running| running.spent());
     if let Some(state) = state {
