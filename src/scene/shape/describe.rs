@@ -94,3 +94,20 @@ pub enum PropertyValue<'a> {
     /// Scale factors along x, y and z; none is 0.
     Factors(&'a mut DVec3),
 }
+
+impl PropertyValue<'_> {
+    /// Calls `visit` with the vector. A single number fills all three coordinates, and then takes on the first.
+    pub fn with_vector(&mut self, visit: impl FnOnce(&mut DVec3)) {
+        match self {
+            Self::Point(vector)
+            | Self::Direction(vector)
+            | Self::Angles(vector)
+            | Self::Factors(vector) => visit(vector),
+            Self::Length(number) | Self::Angle(number) => {
+                let mut vector = DVec3::splat(**number);
+                visit(&mut vector);
+                **number = vector.x;
+            }
+        }
+    }
+}
