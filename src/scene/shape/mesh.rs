@@ -187,16 +187,11 @@ impl Mesh {
     pub fn load(&mut self, folder: Option<&Path>, files: &mut MeshFiles) {
         self.source.load(folder, files);
         // The extent is known only now.
-        let too_far = self.problem();
-        if let MeshSource::File {
-            path,
-            triangles,
-            problem,
-            ..
-        } = &mut self.source
-            && let Some(sentence) = too_far
+        if let MeshSource::File { path, .. } = &self.source
+            && let Some(sentence) = self.problem()
         {
-            (*triangles, *problem) = (Arc::default(), Some(format!("{path}: {sentence}")));
+            let problem = format!("{path}: {sentence}");
+            self.source.set_read(Err(problem));
         }
     }
 

@@ -59,9 +59,8 @@ impl MeshSource {
         let Self::File {
             path,
             folder: own_folder,
-            triangles,
-            problem,
             marks,
+            ..
         } = self
         else {
             return;
@@ -88,9 +87,19 @@ impl MeshSource {
                 files.entry(path.clone()).or_insert_with(read).clone()
             }
         };
-        match read {
-            Ok(new) => (*triangles, *problem) = (new, None),
-            Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
+        self.set_read(read);
+    }
+
+    /// Stores the triangles of the file, or why it could not be read, if the source is a file.
+    pub fn set_read(&mut self, read: Result<Arc<Triangles>, String>) {
+        if let Self::File {
+            triangles, problem, ..
+        } = self
+        {
+            (*triangles, *problem) = match read {
+                Ok(new) => (new, None),
+                Err(sentence) => (Arc::default(), Some(sentence)),
+            };
         }
     }
 
