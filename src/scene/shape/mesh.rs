@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{BVec3, DAffine3, DMat3, DQuat, DVec3};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -286,19 +286,11 @@ impl Describe for Mesh {
         let (low, high) = self.source.triangles().bounds()?;
         let transform = self.transform();
         let corners = (0..8).map(|corner| {
-            let part = |axis: usize| {
-                if corner >> axis & 1 == 0 {
-                    low[axis]
-                } else {
-                    high[axis]
-                }
-            };
-            transform.transform_point3(DVec3::new(part(0), part(1), part(2)))
+            let is_high = BVec3::from([0, 1, 2].map(|axis| corner >> axis & 1 == 1));
+            let corner = transform.transform_point3(DVec3::select(is_high, high, low));
+            (corner, corner)
         });
-        let first = corners.clone().next()?;
-        Some(corners.fold((first, first), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        }))
+        corners.reduce(|(low, high), (corner, _)| (low.min(corner), high.max(corner)))
     }
 
     fn position(&self) -> DVec3 {
