@@ -9,7 +9,7 @@ use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
 use super::names::Names;
-use super::object::{Light, LightObj, Object};
+use super::object::{Light, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
 use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
@@ -125,7 +125,7 @@ impl Scene {
                 name: name.to_owned(),
                 position: middle + direction * size,
                 intensity,
-                marker: None::<LightObj>,
+                marker: None,
                 visible: true,
             });
         }
