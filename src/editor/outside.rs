@@ -34,19 +34,15 @@ impl Editor {
 
     /// Whether another program has written the document's file since this window read or wrote it.
     pub fn is_changed_outside(&self) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(path), Some(stamp)) => stamp.is_touched(path) && stamp.is_outdated(path),
-            _ => false,
-        }
+        let known = self.path.as_ref().zip(self.stamp.as_ref());
+        known.is_some_and(|(path, stamp)| stamp.is_touched(path) && stamp.is_outdated(path))
     }
 
     /// Whether saving to `path` would replace something in the document's own file that this window has not
     /// seen.
     pub fn would_lose(&self, path: &Path) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(own), Some(stamp)) => is_same_file(own, path) && stamp.is_outdated(own),
-            _ => false,
-        }
+        let known = self.path.as_ref().zip(self.stamp.as_ref());
+        known.is_some_and(|(own, stamp)| is_same_file(own, path) && stamp.is_outdated(own))
     }
 
     /// Replaces the scene with what another program has written, as a step that can be undone.
