@@ -59,7 +59,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             threads.run(|| run_job(shared, &mut job, &mut kept, &control))
         }));
-        let panic = match outcome {
+        match outcome {
             Ok(outcome) => {
                 let is_study = matches!(job, Job::Lab(_));
                 let has_more = finish(shared, job, Some(outcome));
@@ -67,7 +67,6 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
                 if is_study && has_more && last_wake.elapsed() < REPORT_INTERVAL {
                     continue;
                 }
-                None
             }
             Err(panic) => {
                 match &job {
@@ -79,18 +78,15 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
                     _ => {}
                 }
                 finish(shared, job, None);
-                Some(panic)
+                shared.report(Event::Fault(format!(
+                    "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
+                    panic_text(panic.as_ref())
+                )));
             }
-        };
+        }
         last_wake = Instant::now();
         // The other crew may be waiting until this one is idle.
         shared.wakeup.notify_all();
-        if let Some(panic) = panic {
-            shared.report(Event::Fault(format!(
-                "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
-                panic_text(panic.as_ref())
-            )));
-        }
         (shared.wake)();
     }
 }
