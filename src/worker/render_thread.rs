@@ -61,10 +61,9 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         }));
         match outcome {
             Ok(outcome) => {
-                let is_study = matches!(job, Job::Lab(_));
-                let has_more = finish(shared, job, Some(outcome));
+                let is_study_going_on = finish(shared, job, Some(outcome));
                 // Waking the window to redraw would disturb the time measurements.
-                if is_study && has_more && last_wake.elapsed() < REPORT_INTERVAL {
+                if is_study_going_on && last_wake.elapsed() < REPORT_INTERVAL {
                     continue;
                 }
             }
@@ -149,8 +148,8 @@ fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
     }
 }
 
-/// Reports how a job ended; the outcome `None` is a fault of the tracer. Returns whether the job is still wanted and
-/// has more to do.
+/// Reports how a job ended; the outcome `None` is a fault of the tracer. Returns whether the job is a study that is
+/// still wanted and has more to do.
 fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
     match (job, outcome) {
         (Job::Export(id, exporting), outcome) => {
@@ -159,22 +158,18 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
                 _ => None,
             };
             finish_frame(shared, id, exporting, step);
-            true
         }
-        (Job::Lab(study), Some(outcome)) => finish_study_step(shared, study, &outcome),
+        (Job::Lab(study), Some(outcome)) => return finish_study_step(shared, study, &outcome),
         (job, Some(JobOutcome::Unfinished)) => {
             let running = shared.mailbox().finish(job.kind().crew(), Some(job));
             let given_up = running.filter(|running| running.is_given_up);
             if let Some(path) = given_up.and_then(|running| running.save_to) {
                 shared.report_unwritten(&path);
             }
-            true
         }
-        (job, _) => {
-            shared.mailbox().finish(job.kind().crew(), None);
-            false
-        }
+        (job, _) => drop(shared.mailbox().finish(job.kind().crew(), None)),
     }
+    false
 }
 
 /// Puts an export back into the queue for its next frame, or notes how it ended. An export that is no longer wanted
