@@ -52,8 +52,13 @@ struct SerializedMesh {
         skip_serializing_if = "notation::is_default"
     )]
     rotation: DVec3,
-    #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
-    scale: Scale,
+    #[serde(
+        default = "unscaled",
+        serialize_with = "serialize_scale",
+        deserialize_with = "notation::vector::one_or_three",
+        skip_serializing_if = "is_unscaled"
+    )]
+    scale: DVec3,
     #[serde(
         default,
         with = "notation::number",
@@ -67,32 +72,21 @@ struct SerializedMesh {
 #[serde(transparent)]
 struct Point(#[serde(with = "notation::vector")] DVec3);
 
-/// Scale factors, serialized as a single number if all three are equal.
-#[derive(Clone, Copy, PartialEq)]
-struct Scale(DVec3);
-
-fn unscaled() -> Scale {
-    Scale(DVec3::ONE)
+fn unscaled() -> DVec3 {
+    DVec3::ONE
 }
 
-fn is_unscaled(scale: &Scale) -> bool {
+fn is_unscaled(scale: &DVec3) -> bool {
     *scale == unscaled()
 }
 
-impl Serialize for Scale {
-    fn serialize<S: Serializer>(&self, file: S) -> Result<S::Ok, S::Error> {
-        let [x, y, z] = self.0.to_array();
-        if x == y && y == z {
-            notation::number::serialize(&x, file)
-        } else {
-            notation::vector::serialize(&self.0, file)
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Scale {
-    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
-        notation::vector::one_or_three(file).map(Self)
+/// Writes scale factors, as a single number if all three are equal.
+fn serialize_scale<S: Serializer>(scale: &DVec3, file: S) -> Result<S::Ok, S::Error> {
+    let [x, y, z] = scale.to_array();
+    if x == y && y == z {
+        notation::number::serialize(&x, file)
+    } else {
+        notation::vector::serialize(scale, file)
     }
 }
 
@@ -112,7 +106,7 @@ impl Serialize for Mesh {
             faces,
             position: self.position,
             rotation: self.rotation,
-            scale: Scale(self.scale),
+            scale: self.scale,
             smooth: self.smooth,
         };
         text.serialize(file)
@@ -139,7 +133,7 @@ impl<'de> Deserialize<'de> for Mesh {
             source,
             position: text.position,
             rotation: text.rotation,
-            scale: text.scale.0,
+            scale: text.scale,
             smooth: text.smooth,
         })
     }
