@@ -124,10 +124,8 @@ fn reference_to(path: &Path) -> Option<String> {
 fn plain_pack() -> ColorPack {
     let clay = DVec3::new(214.0, 200.0, 184.0);
     ColorPack {
-        ambient: clay,
-        diffuse: clay,
         specular: DVec3::splat(60.0),
-        ..ColorPack::default()
+        ..ColorPack::of_color(clay)
     }
 }
 

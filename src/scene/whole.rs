@@ -372,20 +372,11 @@ pub fn default_ambient_intensity() -> f64 {
 
 /// Default color pack of light markers.
 pub fn light_pack() -> ColorPack {
-    let yellow = DVec3::new(255.0, 255.0, 0.0);
-    ColorPack {
-        ambient: yellow,
-        diffuse: yellow,
-        ..ColorPack::default()
-    }
+    ColorPack::of_color(DVec3::new(255.0, 255.0, 0.0))
 }
 
 fn default_packs() -> Packs {
-    let matte = |x, y, z| ColorPack {
-        ambient: DVec3::new(x, y, z),
-        diffuse: DVec3::new(x, y, z),
-        ..ColorPack::default()
-    };
+    let matte = |x, y, z| ColorPack::of_color(DVec3::new(x, y, z));
     Packs::from(IndexMap::from([
         ("sphere 1".to_owned(), matte(255.0, 128.0, 255.0)),
         ("sphere 2".to_owned(), matte(255.0, 128.0, 128.0)),
