@@ -110,24 +110,21 @@ impl Editor {
     /// Returns clauses about lost appearance: color packs of all joined objects but the first, smoothness, and which
     /// of them were hidden.
     fn lost_appearance(&self, joined: &[usize]) -> Vec<String> {
-        let Some((first, others)) = joined.split_first() else {
+        let objects = joined.iter();
+        let objects = objects.filter_map(|&index| self.scene.objects.get(index));
+        let objects: Vec<&Object> = objects.collect();
+        let Some((first, others)) = objects.split_first() else {
             return Vec::new();
         };
-        let pack = |index: &usize| Some(&self.scene.objects.get(*index)?.color_pack);
-        let own_pack = pack(first).map_or("", String::as_str);
-        let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
+        let own_pack = &first.color_pack;
+        let packs: IndexSet<&String> = others.iter().map(|object| &object.color_pack).collect();
         let packs = packs.into_iter().filter(|pack| *pack != own_pack).cloned();
         let packs = listed(packs)
             .map(|names| format!("all of it uses {own_pack} now, including what used {names}"));
-        let flat = others.is_empty().then_some(*first).filter(|&index| {
-            let object = self.scene.objects.get(index);
-            object.is_some_and(Object::is_smooth)
-        });
-        let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
-        let objects = joined
-            .iter()
-            .filter_map(|&index| self.scene.objects.get(index));
-        let (seen, hidden): (Vec<_>, Vec<_>) = objects.partition(|object| object.visible);
+        let is_flat_now = others.is_empty() && first.is_smooth();
+        let flat = is_flat_now.then(|| "its faces are shaded flat now".to_owned());
+        let (seen, hidden): (Vec<_>, Vec<_>) =
+            objects.into_iter().partition(|object| object.visible);
         let hidden = hidden.iter().map(|object| object.name.clone());
         let hidden = listed(hidden).filter(|_| !seen.is_empty());
         let hidden = hidden.map(|names| format!("what was hidden is visible now ({names})"));
