@@ -80,10 +80,8 @@ impl MeshSource {
                 "{path} is not read: a mesh file must be in the folder of the scene, or below it"
             )),
             Some(folder) => {
-                let read = || match read_triangles(&folder.join(&path)) {
-                    Ok(triangles) => Ok(Arc::new(triangles)),
-                    Err(error) => Err(error.to_string()),
-                };
+                let read = || read_triangles(&folder.join(&path)).map(Arc::new);
+                let read = || read().map_err(|error| error.to_string());
                 files.entry(path.clone()).or_insert_with(read).clone()
             }
         };
