@@ -1,6 +1,5 @@
 //! The scene itself.
 
-use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -189,7 +188,7 @@ impl Scene {
     /// there.
     #[must_use]
     pub fn reloaded_from(&self, folder: &Path) -> Self {
-        let files = RefCell::new(MeshFiles::new());
+        let mut files = MeshFiles::new();
         self.with_sources(|source| {
             source.problem()?;
             let own_folder = source.reference().map(|(own_folder, _)| own_folder);
@@ -197,7 +196,7 @@ impl Scene {
                 return None;
             }
             let mut new = source.clone();
-            new.load(Some(folder), &mut files.borrow_mut());
+            new.load(Some(folder), &mut files);
             Some(new)
         })
     }
@@ -286,7 +285,7 @@ impl Scene {
 
     /// Returns the scene with each mesh source replaced for which `change` returns another one. Everything else
     /// stays shared.
-    fn with_sources(&self, change: impl Fn(&MeshSource) -> Option<MeshSource>) -> Self {
+    fn with_sources(&self, mut change: impl FnMut(&MeshSource) -> Option<MeshSource>) -> Self {
         let mut scene = self.clone();
         scene.change_meshes(|mesh| {
             let source = change(&mesh.source)?;
