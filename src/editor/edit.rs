@@ -118,10 +118,10 @@ impl Replaced {
 
     /// Returns whether a target is overwritten that belongs to the light or object at index `index`.
     pub fn holds(&self, target: &Target, index: Option<usize>) -> bool {
-        let owners = match target {
-            Target::AmbientIntensity => return self.ambient,
-            Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
-            Target::ObjectPosition(_) | Target::ObjectRotation(_) => &self.objects,
+        let owners = match target.owner() {
+            None => return self.ambient,
+            Some(Owner::Light(_)) => &self.lights,
+            Some(Owner::Object(_)) => &self.objects,
         };
         index.is_some_and(|index| owners.contains(&index))
     }
