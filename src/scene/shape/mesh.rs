@@ -7,8 +7,8 @@ use glam::{BVec3, DAffine3, DMat3, DQuat, DVec3};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::angles::{angles_of, orientation_of, turned_about};
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::angles::{orientation_of, turned_about};
+use super::describe::{Describe, Property, PropertyValue};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
 use crate::mesh::{MAX_ABS_COORDINATE, Triangles, icosphere};
@@ -291,29 +291,6 @@ impl Describe for Mesh {
         self.position
     }
 
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            position: self.position + by,
-            ..self.clone()
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            position: turned(self.position, about, by),
-            rotation: angles_of(by * self.orientation(), self.rotation),
-            ..self.clone()
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            position: scaled(self.position, about, by),
-            scale: self.scale * by,
-            ..self.clone()
-        }
-    }
-
     /// Describes the mesh as a whole: the size of single triangles does not matter, since their neighbours are
     /// displaced along with them.
     fn feature(&self) -> Option<(DVec3, f64)> {
@@ -356,7 +333,7 @@ mod tests {
         let mut expected = mesh.transform().transform_point3(corner);
         for axis in [DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
             let by = DQuat::from_axis_angle(axis, 1.3);
-            expected = turned(expected, about, by);
+            expected = about + by * (expected - about);
             mesh = mesh.turned(about, by);
         }
         let found = mesh.transform().transform_point3(corner);
