@@ -1,5 +1,6 @@
 //! The camera as a function of time.
 
+use std::array;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
@@ -12,13 +13,17 @@ use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME};
 /// distance.
 const ON_AXIS: f64 = 1e-9;
 
+/// What is interpolated besides the position: yaw, pitch and roll in radians, and the logarithms of the projection
+/// distance and the orthographic height.
+type CameraNumbers = [f64; 5];
+
 /// Camera keys prepared for evaluation at any time.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
     keys: Vec<Key<Camera>>,
-    /// Yaw, pitch and roll of the keys, each with the full turns that make it nearest to the one before, so that
-    /// the camera never turns the longer way.
-    angles: Vec<Orientation>,
+    /// Those of the keys. Each angle has the full turns that make it nearest to the one before, so that the camera
+    /// never turns the longer way.
+    numbers: Vec<CameraNumbers>,
     /// For each key that begins a smooth segment, the index of its run and its index in that run.
     smooth_segments: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
@@ -30,22 +35,23 @@ struct Run {
     route: ArcLengthSpline,
     /// Arc length over time.
     pace: Curve,
-    yaw: Curve,
-    pitch: Curve,
-    roll: Curve,
-    /// Logarithm of the projection distance over time.
-    zoom: Curve,
-    /// Logarithm of the orthographic height over time.
-    height: Curve,
+    /// The [`CameraNumbers`] over time.
+    curves: [Curve; 5],
 }
 
 impl CameraPath {
     /// Creates the path through `keys`, which are in order of time.
     pub fn new(keys: &[Key<Camera>]) -> Self {
-        let angles = unwound(keys.iter().map(|key| Orientation::of(&key.value)));
+        let cameras = keys.iter().map(|key| &key.value);
+        let angles = unwound(cameras.clone().map(Orientation::of));
+        let numbers = cameras.zip(angles).map(|(camera, angles)| {
+            let (zoom, height) = (camera.projection_distance, camera.orthographic_height);
+            let Orientation { yaw, pitch, roll } = angles;
+            [yaw, pitch, roll, zoom.ln(), height.ln()]
+        });
         let mut path = Self {
             keys: keys.to_vec(),
-            angles,
+            numbers: numbers.collect(),
             smooth_segments: Vec::new(),
             runs: Vec::new(),
         };
@@ -62,7 +68,7 @@ impl CameraPath {
 
     fn run(&self, range: Range<usize>) -> Run {
         let keys = &self.keys[range.clone()];
-        let angles = &self.angles[range];
+        let numbers = &self.numbers[range];
         // Only a flight that is a single run from start to end can be closed.
         let is_whole = keys.len() == self.keys.len();
         let closing = if is_whole && is_closed(&keys[0].value, &keys[keys.len() - 1].value) {
@@ -72,19 +78,12 @@ impl CameraPath {
         };
         let times: Vec<f64> = keys.iter().map(|key| key.time).collect();
         let curve = |values: Vec<f64>| Curve::new(times.clone(), values, closing);
-        let angle = |of: fn(&Orientation) -> f64| curve(angles.iter().map(of).collect());
-        let log_curve =
-            |of: fn(&Camera) -> f64| curve(keys.iter().map(|key| of(&key.value).ln()).collect());
         let points: Vec<DVec3> = keys.iter().map(|key| key.value.position).collect();
         let route = ArcLengthSpline::new(&points, closing);
         Run {
             pace: curve(route.lengths_at_points().to_vec()),
             route,
-            yaw: angle(|angles| angles.yaw),
-            pitch: angle(|angles| angles.pitch),
-            roll: angle(|angles| angles.roll),
-            zoom: log_curve(|camera| camera.projection_distance),
-            height: log_curve(|camera| camera.orthographic_height),
+            curves: array::from_fn(|n| curve(numbers.iter().map(|numbers| numbers[n]).collect())),
         }
     }
 
@@ -97,73 +96,45 @@ impl CameraPath {
     /// `None` without keys. At the time of a key, the result is exactly that key's camera.
     pub fn at(&self, time: f64) -> Option<Camera> {
         let (i, along) = segment_at(&self.keys, time)?;
-        let Some(along) = along else {
-            return Some(self.keys[i].value.clone());
-        };
-        if let Some((run, index)) = self.smooth_segments[i] {
-            return Some(self.smooth_camera(i, &self.runs[run], index, along));
-        }
-        let mut camera = self.linear_camera(i, along);
-        if let Interpolation::Orbit { around } = self.keys[i].interpolation {
-            let [from, to] = [i, i + 1].map(|key| self.keys[key].value.position);
-            camera.position = orbit(around, from, to, along);
-        }
-        Some(camera)
-    }
-
-    fn linear_camera(&self, i: usize, along: f64) -> Camera {
-        let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
-        let (start, end) = (self.angles[i], self.angles[i + 1]);
-        let mix = |a: f64, b: f64| a + (b - a) * along;
-        let angles = Orientation {
-            yaw: mix(start.yaw, end.yaw),
-            pitch: mix(start.pitch, end.pitch),
-            roll: mix(start.roll, end.roll),
-        };
-        let zoom = |a: f64, b: f64| if a == b { a } else { mix(a.ln(), b.ln()).exp() };
-        angles.apply(&Camera {
-            position: from.position + (to.position - from.position) * along,
-            projection_distance: zoom(from.projection_distance, to.projection_distance),
-            orthographic_height: zoom(from.orthographic_height, to.orthographic_height),
-            ..from.clone()
+        Some(match along {
+            None => self.keys[i].value.clone(),
+            Some(along) => self.between(i, along),
         })
     }
 
-    /// Returns the camera on the smooth segment `i` of the path, which is segment `index` of its run.
-    fn smooth_camera(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
+    /// Returns the camera after a share of the way from the key `i` to the next one.
+    fn between(&self, i: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
-        let position = match run.route.at(run.pace.at(index, along)) {
-            Some(position) if from.position != to.position => position,
-            _ => from.position,
-        };
-        let start = self.angles[i];
-        let turned = Orientation {
-            yaw: run.yaw.at(index, along),
-            pitch: run.pitch.at(index, along),
-            roll: run.roll.at(index, along),
-        };
-        let zoom = |a: f64, b: f64, curve: &Curve| {
-            if a == b {
-                a
-            } else {
-                curve.at(index, along).exp()
+        let smooth = self.smooth_segments[i].map(|(run, index)| (&self.runs[run], index));
+        let position = match (smooth, self.keys[i].interpolation) {
+            (Some((run, index)), _) => {
+                let position = run.route.at(run.pace.at(index, along));
+                let moved = position.filter(|_| from.position != to.position);
+                moved.unwrap_or(from.position)
             }
+            (None, Interpolation::Orbit { around }) => {
+                orbit(around, from.position, to.position, along)
+            }
+            (None, _) => from.position + (to.position - from.position) * along,
         };
+        let (start, end) = (self.numbers[i], self.numbers[i + 1]);
+        let numbers = match smooth {
+            Some((run, index)) => run.curves.each_ref().map(|curve| curve.at(index, along)),
+            None => array::from_fn(|n| start[n] + (end[n] - start[n]) * along),
+        };
+        let [yaw, pitch, roll, zoom, height] = numbers;
+        let zoomed = |a: f64, b: f64, log: f64| if a == b { a } else { log.exp() };
         let camera = Camera {
             position,
-            projection_distance: zoom(from.projection_distance, to.projection_distance, &run.zoom),
-            orthographic_height: zoom(
-                from.orthographic_height,
-                to.orthographic_height,
-                &run.height,
-            ),
+            projection_distance: zoomed(from.projection_distance, to.projection_distance, zoom),
+            orthographic_height: zoomed(from.orthographic_height, to.orthographic_height, height),
             ..from.clone()
         };
         // Without rotation, the key's own vectors are kept, so that a constant orientation is exactly constant.
-        if turned == start {
+        if smooth.is_some() && numbers[..3] == start[..3] {
             camera
         } else {
-            turned.apply(&camera)
+            Orientation { yaw, pitch, roll }.apply(&camera)
         }
     }
 }
