@@ -7,7 +7,7 @@ use super::coincidence::{Coincidence, Overlap, coincidences};
 use super::direction::unit;
 use super::frame::CoordinateFrame;
 use super::object::Object;
-use super::shape::Shape;
+use super::shape::{Outline, Shape};
 use super::whole::Scene;
 
 /// Largest number of pairs of an object and a light that are examined.
@@ -163,30 +163,26 @@ fn is_inside(shape: &Shape, point: DVec3) -> bool {
 }
 
 fn is_on(shape: &Shape, point: DVec3) -> bool {
-    let on_plane = |plane_point: DVec3, normal: DVec3| {
-        let distance = (point - plane_point)
-            .dot(unit(normal).unwrap_or_default())
-            .abs();
-        distance <= ON_SURFACE * (point.length() + plane_point.length())
-    };
-    match shape {
-        Shape::Sphere(ball) => {
-            let distance = (ball.center.distance(point) - ball.radius).abs();
-            distance <= ON_SURFACE * (ball.radius + point.length())
-        }
-        Shape::Plane(plane) => on_plane(plane.point, plane.normal),
-        Shape::Disc(disc) => {
-            on_plane(disc.center, disc.normal) && disc.center.distance(point) <= disc.radius
-        }
-        Shape::Triangle(triangle) => {
-            let [a, b, c] = triangle.corners();
-            let normal = (b - a).cross(c - a);
-            let side = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal);
-            let sides = [side(a, b), side(b, c), side(c, a)];
-            on_plane(a, normal) && sides.iter().all(|side| *side >= 0.0)
-        }
-        Shape::Mesh(_) => false,
+    if let Shape::Sphere(ball) = shape {
+        let distance = (ball.center.distance(point) - ball.radius).abs();
+        return distance <= ON_SURFACE * (ball.radius + point.length());
     }
+    let Some(piece) = shape.plane_piece() else {
+        return false;
+    };
+    let height = (point - piece.point).dot(piece.normal).abs();
+    let is_on_plane = height <= ON_SURFACE * (point.length() + piece.point.length());
+    let is_within = || match piece.outline {
+        Outline::Endless => true,
+        Outline::Disc(radius) => piece.point.distance(point) <= radius,
+        Outline::Triangle([a, b, c]) => {
+            let side = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(piece.normal);
+            [side(a, b), side(b, c), side(c, a)]
+                .iter()
+                .all(|side| *side >= 0.0)
+        }
+    };
+    is_on_plane && is_within()
 }
 
 fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {
