@@ -167,11 +167,7 @@ impl Selection {
     /// Returns for each of `count` objects whether it is selected: faster than [`Self::has`] for many objects.
     pub fn object_marks(&self, count: usize) -> Vec<bool> {
         let mut marks = vec![false; count];
-        for item in self
-            .items()
-            .iter()
-            .filter(|item| item.kind == ItemKind::Object)
-        {
+        for item in self.of_kind(ItemKind::Object) {
             if let Some(mark) = marks.get_mut(item.index) {
                 *mark = true;
             }
@@ -180,13 +176,12 @@ impl Selection {
     }
 
     /// Whether all of these items are selected.
-    pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
+    pub fn has_all(&self, mut items: impl ExactSizeIterator<Item = Item>) -> bool {
         // The usual case: fewer items are selected.
         if self.items().len() < items.len() {
             return false;
         }
         let selected: HashSet<&Item> = self.items().iter().collect();
-        let mut items = items;
         items.all(|item| selected.contains(&item))
     }
 
