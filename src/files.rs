@@ -177,17 +177,11 @@ impl NewFile {
 
 /// Removes unfinished files that killed processes have left in a folder.
 pub fn remove_leftovers(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else {
-        return;
-    };
-    for entry in entries.flatten() {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        let is_new_file = name.to_string_lossy().starts_with(UNFINISHED);
-        if !is_new_file {
-            continue;
-        }
         // A process that still writes to the file holds its lock.
-        if let Ok(file) = open_file(&entry.path())
+        if name.to_string_lossy().starts_with(UNFINISHED)
+            && let Ok(file) = open_file(&entry.path())
             && file.try_lock().is_ok()
         {
             let _ = fs::remove_file(entry.path());
@@ -401,16 +395,14 @@ fn new_file_in(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder).map_err(|error| {
-        let error = without_path(error);
-        match error.kind() {
-            // The existing file may be writable, so the message says that the folder is the reason.
-            kind @ io::ErrorKind::PermissionDenied => io::Error::new(
-                kind,
-                format!("writing to its folder is not permitted: {error}"),
-            ),
-            _ => error,
+    let created = builder.tempfile_in(folder).map_err(without_path);
+    created.map_err(|error| match error.kind() {
+        // The existing file may be writable, so the message says that the folder is the reason.
+        kind @ io::ErrorKind::PermissionDenied => {
+            let why = format!("writing to its folder is not permitted: {error}");
+            io::Error::new(kind, why)
         }
+        _ => error,
     })
 }
 

@@ -1,6 +1,8 @@
 //! The camera as a function of time.
 
+use std::array;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -11,14 +13,18 @@ use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME};
 /// distance.
 const ON_AXIS: f64 = 1e-9;
 
+/// What is interpolated besides the position: yaw, pitch and roll in radians, and the logarithms of the projection
+/// distance and the orthographic height.
+type CameraNumbers = [f64; 5];
+
 /// Camera keys prepared for evaluation at any time.
 #[derive(Clone, Debug)]
 pub struct CameraPath {
     keys: Vec<Key<Camera>>,
-    /// Yaw, pitch and roll of the keys, each with the full turns that make it nearest to the one before, so that
-    /// the camera never turns the longer way.
-    angles: Vec<Orientation>,
-    /// For each smooth segment, the index of its run and its index in that run; `None` for other segments.
+    /// Those of the keys. Each angle has the full turns that make it nearest to the one before, so that the camera
+    /// never turns the longer way.
+    numbers: Vec<CameraNumbers>,
+    /// For each key that begins a smooth segment, the index of its run and its index in that run.
     smooth_segments: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
 }
@@ -29,46 +35,42 @@ struct Run {
     route: ArcLengthSpline,
     /// Arc length over time.
     pace: Curve,
-    yaw: Curve,
-    pitch: Curve,
-    roll: Curve,
-    /// Logarithm of the projection distance over time.
-    zoom: Curve,
-    /// Logarithm of the orthographic height over time.
-    height: Curve,
+    /// The [`CameraNumbers`] over time.
+    curves: [Curve; 5],
 }
 
 impl CameraPath {
     /// Creates the path through `keys`, which are in order of time.
     pub fn new(keys: &[Key<Camera>]) -> Self {
-        let angles = unwound(keys.iter().map(|key| Orientation::of(&key.value)));
+        let cameras = keys.iter().map(|key| &key.value);
+        let angles = unwound(cameras.clone().map(Orientation::of));
+        let numbers = cameras.zip(angles).map(|(camera, angles)| {
+            let (zoom, height) = (camera.projection_distance, camera.orthographic_height);
+            let Orientation { yaw, pitch, roll } = angles;
+            [yaw, pitch, roll, zoom.ln(), height.ln()]
+        });
         let mut path = Self {
             keys: keys.to_vec(),
-            angles,
-            smooth_segments: vec![None; keys.len().saturating_sub(1)],
+            numbers: numbers.collect(),
+            smooth_segments: Vec::new(),
             runs: Vec::new(),
         };
-        let is_smooth = |i: usize| keys[i].interpolation == Interpolation::Smooth;
-        let mut start = 0;
-        while start + 1 < keys.len() {
-            let mut end = start;
-            while end + 1 < keys.len() && is_smooth(end) {
-                path.smooth_segments[end] = Some((path.runs.len(), end - start));
-                end += 1;
+        for run in keys.chunk_by(|key, _| key.interpolation == Interpolation::Smooth) {
+            let (start, number) = (path.smooth_segments.len(), path.runs.len());
+            let segments = (1..run.len()).map(|end| Some((number, end - 1)));
+            path.smooth_segments.extend(segments.chain([None]));
+            if run.len() > 1 {
+                path.runs.push(path.run(start..start + run.len()));
             }
-            if end > start {
-                path.runs.push(path.run(start, end));
-            }
-            start = end.max(start + 1);
         }
         path
     }
 
-    fn run(&self, start: usize, end: usize) -> Run {
-        let keys = &self.keys[start..=end];
-        let angles = &self.angles[start..=end];
+    fn run(&self, range: Range<usize>) -> Run {
+        let keys = &self.keys[range.clone()];
+        let numbers = &self.numbers[range];
         // Only a flight that is a single run from start to end can be closed.
-        let is_whole = start == 0 && end + 1 == self.keys.len();
+        let is_whole = keys.len() == self.keys.len();
         let closing = if is_whole && is_closed(&keys[0].value, &keys[keys.len() - 1].value) {
             Closing::Closed
         } else {
@@ -76,19 +78,12 @@ impl CameraPath {
         };
         let times: Vec<f64> = keys.iter().map(|key| key.time).collect();
         let curve = |values: Vec<f64>| Curve::new(times.clone(), values, closing);
-        let angle = |of: fn(&Orientation) -> f64| curve(angles.iter().map(of).collect());
-        let log_curve =
-            |of: fn(&Camera) -> f64| curve(keys.iter().map(|key| of(&key.value).ln()).collect());
         let points: Vec<DVec3> = keys.iter().map(|key| key.value.position).collect();
         let route = ArcLengthSpline::new(&points, closing);
         Run {
             pace: curve(route.lengths_at_points().to_vec()),
             route,
-            yaw: angle(|angles| angles.yaw),
-            pitch: angle(|angles| angles.pitch),
-            roll: angle(|angles| angles.roll),
-            zoom: log_curve(|camera| camera.projection_distance),
-            height: log_curve(|camera| camera.orthographic_height),
+            curves: array::from_fn(|n| curve(numbers.iter().map(|numbers| numbers[n]).collect())),
         }
     }
 
@@ -100,90 +95,70 @@ impl CameraPath {
     /// Returns the camera at `time` in seconds; before the first and after the last key, it is that of the key.
     /// `None` without keys. At the time of a key, the result is exactly that key's camera.
     pub fn at(&self, time: f64) -> Option<Camera> {
-        let after = self.keys.partition_point(|key| key.time <= time);
-        let Some(i) = after.checked_sub(1) else {
-            return self.keys.first().map(|key| key.value.clone());
-        };
-        let from = &self.keys[i];
-        let Some(to) = self.keys.get(i + 1).filter(|_| time > from.time) else {
-            return Some(from.value.clone());
-        };
-        let along = eased(from.easing, (time - from.time) / (to.time - from.time));
-        let camera = match (from.interpolation, self.smooth_segments[i]) {
-            (Interpolation::Hold, _) if to.time - time < SAME_TIME => to.value.clone(),
-            (Interpolation::Hold, _) => from.value.clone(),
-            (_, Some((run, index))) => self.smooth_camera(i, &self.runs[run], index, along),
-            (Interpolation::Orbit { around }, _) => {
-                let position = orbit(around, from.value.position, to.value.position, along);
-                Camera {
-                    position,
-                    ..self.linear_camera(i, along)
-                }
-            }
-            (Interpolation::Linear | Interpolation::Smooth, _) => self.linear_camera(i, along),
-        };
-        Some(camera)
-    }
-
-    fn linear_camera(&self, i: usize, along: f64) -> Camera {
-        let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
-        let (start, end) = (self.angles[i], self.angles[i + 1]);
-        let mix = |a: f64, b: f64| a + (b - a) * along;
-        let angles = Orientation {
-            yaw: mix(start.yaw, end.yaw),
-            pitch: mix(start.pitch, end.pitch),
-            roll: mix(start.roll, end.roll),
-        };
-        let zoom = |a: f64, b: f64| if a == b { a } else { mix(a.ln(), b.ln()).exp() };
-        angles.apply(&Camera {
-            position: from.position + (to.position - from.position) * along,
-            projection_distance: zoom(from.projection_distance, to.projection_distance),
-            orthographic_height: zoom(from.orthographic_height, to.orthographic_height),
-            ..from.clone()
+        let (i, along) = segment_at(&self.keys, time)?;
+        Some(match along {
+            None => self.keys[i].value.clone(),
+            Some(along) => self.between(i, along),
         })
     }
 
-    /// Returns the camera on the smooth segment `i` of the path, which is segment `index` of its run.
-    fn smooth_camera(&self, i: usize, run: &Run, index: usize, along: f64) -> Camera {
+    /// Returns the camera after a share of the way from the key `i` to the next one.
+    fn between(&self, i: usize, along: f64) -> Camera {
         let (from, to) = (&self.keys[i].value, &self.keys[i + 1].value);
-        let position = match run.route.at(run.pace.at(index, along)) {
-            Some(position) if from.position != to.position => position,
-            _ => from.position,
-        };
-        let start = self.angles[i];
-        let turned = Orientation {
-            yaw: run.yaw.at(index, along),
-            pitch: run.pitch.at(index, along),
-            roll: run.roll.at(index, along),
-        };
-        let zoom = |a: f64, b: f64, curve: &Curve| {
-            if a == b {
-                a
-            } else {
-                curve.at(index, along).exp()
+        let smooth = self.smooth_segments[i].map(|(run, index)| (&self.runs[run], index));
+        let position = match (smooth, self.keys[i].interpolation) {
+            (Some((run, index)), _) => {
+                let position = run.route.at(run.pace.at(index, along));
+                let moved = position.filter(|_| from.position != to.position);
+                moved.unwrap_or(from.position)
             }
+            (None, Interpolation::Orbit { around }) => {
+                orbit(around, from.position, to.position, along)
+            }
+            (None, _) => from.position + (to.position - from.position) * along,
         };
+        let (start, end) = (self.numbers[i], self.numbers[i + 1]);
+        let numbers = match smooth {
+            Some((run, index)) => run.curves.each_ref().map(|curve| curve.at(index, along)),
+            None => array::from_fn(|n| start[n] + (end[n] - start[n]) * along),
+        };
+        let [yaw, pitch, roll, zoom, height] = numbers;
+        let zoomed = |a: f64, b: f64, log: f64| if a == b { a } else { log.exp() };
         let camera = Camera {
             position,
-            projection_distance: zoom(from.projection_distance, to.projection_distance, &run.zoom),
-            orthographic_height: zoom(
-                from.orthographic_height,
-                to.orthographic_height,
-                &run.height,
-            ),
+            projection_distance: zoomed(from.projection_distance, to.projection_distance, zoom),
+            orthographic_height: zoomed(from.orthographic_height, to.orthographic_height, height),
             ..from.clone()
         };
         // Without rotation, the key's own vectors are kept, so that a constant orientation is exactly constant.
-        if turned == start {
+        if smooth.is_some() && numbers[..3] == start[..3] {
             camera
         } else {
-            turned.apply(&camera)
+            Orientation { yaw, pitch, roll }.apply(&camera)
         }
     }
 }
 
+/// Returns the index of the key whose value is shown at `time` in seconds: before the first and after the last key, it
+/// is that key. Between two values, it is the first key, with the share of the path covered to the next one. `None`
+/// without keys.
+pub(super) fn segment_at<T>(keys: &[Key<T>], time: f64) -> Option<(usize, Option<f64>)> {
+    let after = keys.partition_point(|key| key.time <= time);
+    let i = after.saturating_sub(1);
+    let from = keys.get(i)?;
+    let Some(to) = keys.get(i + 1).filter(|_| time > from.time) else {
+        return Some((i, None));
+    };
+    if from.interpolation == Interpolation::Hold {
+        let is_next = to.time - time < SAME_TIME;
+        return Some((i + usize::from(is_next), None));
+    }
+    let along = (time - from.time) / (to.time - from.time);
+    Some((i, Some(eased(from.easing, along))))
+}
+
 /// Returns the share of the path covered after a share `along` of the time.
-pub(super) fn eased(easing: Easing, along: f64) -> f64 {
+fn eased(easing: Easing, along: f64) -> f64 {
     match easing {
         Easing::Even => along,
         Easing::In => along * along,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::path::{eased, orbit};
+use super::path::{orbit, segment_at};
 use super::{ArcLengthSpline, CameraPath, Closing, Curve};
-use crate::scene::{Camera, Interpolation, Key, Owners, Projection, SAME_TIME, Scene, Value};
+use crate::scene::{Camera, Interpolation, Key, Owners, Projection, Scene, Value};
 
 /// Returns the scene at `time` in seconds, with the values of all tracks applied. The camera is unchanged.
 pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
@@ -38,18 +38,12 @@ pub fn shot(scene: &Arc<Scene>, path: &CameraPath, time: f64) -> Arc<Scene> {
 
 /// Returns the value of a track at a time; `None` without keys.
 fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
-    let after = keys.partition_point(|key| key.time <= time);
-    let Some(i) = after.checked_sub(1) else {
-        return keys.first().map(|key| key.value);
-    };
+    let (i, along) = segment_at(keys, time)?;
     let from = &keys[i];
-    let Some(to) = keys.get(i + 1).filter(|_| time > from.time) else {
+    let Some(along) = along else {
         return Some(from.value);
     };
-    let along = eased(from.easing, (time - from.time) / (to.time - from.time));
-    Some(match (from.value, to.value, from.interpolation) {
-        (_, _, Interpolation::Hold) if to.time - time < SAME_TIME => to.value,
-        (_, _, Interpolation::Hold) => from.value,
+    Some(match (from.value, keys[i + 1].value, from.interpolation) {
         (Value::Number(_), Value::Number(_), Interpolation::Smooth) => {
             let (run, index) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();

@@ -1,6 +1,7 @@
 //! Interpolates a recorded flight between input events: mice and touchpads report less often than pictures are
 //! shown, so that the recorded camera stands still in between, although the hand did not.
 
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
@@ -14,13 +15,13 @@ const PAUSE: f64 = 0.15;
 /// are interpolated linearly. Also returns how many samples were changed.
 pub fn resampled(take: &Take) -> (Take, usize) {
     let samples = &take.samples;
-    let mut moved = samples.clone();
-    let mut is_changed = vec![false; samples.len()];
+    let mut even = take.clone();
+    let mut changed = HashSet::new();
     for (from, to) in steps(samples, |a, b| a.1 == b.1) {
         for n in from + 1..to {
             let share = share(samples, (from, n, to));
-            moved[n].1 = samples[from].1.lerp(samples[to].1, share);
-            is_changed[n] = true;
+            even.samples[n].1 = samples[from].1.lerp(samples[to].1, share);
+            changed.insert(n);
         }
     }
     for (from, to) in steps(samples, |a, b| angles(a) == angles(b)) {
@@ -28,18 +29,12 @@ pub fn resampled(take: &Take) -> (Take, usize) {
         let turn = (after - before).map(|angle| (angle + PI).rem_euclid(TAU) - PI);
         for n in from + 1..to {
             let turned = before + turn * share(samples, (from, n, to));
-            (moved[n].2, moved[n].3, moved[n].4) = turned.into();
-            is_changed[n] = true;
+            let sample = &mut even.samples[n];
+            (sample.2, sample.3, sample.4) = turned.into();
+            changed.insert(n);
         }
     }
-    let take = Take {
-        samples: moved,
-        lenses: take.lenses.clone(),
-    };
-    (
-        take,
-        is_changed.into_iter().filter(|is_moved| *is_moved).count(),
-    )
+    (even, changed.len())
 }
 
 fn angles(sample: &Sample) -> DVec3 {

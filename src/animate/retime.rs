@@ -114,16 +114,12 @@ fn lengths(keys: &[Key<Camera>]) -> Vec<f64> {
         }
         let step = (pair[1].time - pair[0].time) / STEPS_PER_SEGMENT as f64;
         let at = |n: usize| path.at(pair[0].time + step * n as f64);
-        let mut before = at(0);
-        for n in 1..=STEPS_PER_SEGMENT {
-            let here = at(n);
-            if let (Some(from), Some(to)) = (&before, &here) {
-                let motion = motion_between(from, to);
-                sum.distance += motion.distance;
-                sum.turn += motion.turn;
-                sum.zoom += motion.zoom;
-            }
-            before = here;
+        let cameras: Vec<Camera> = (0..=STEPS_PER_SEGMENT).filter_map(at).collect();
+        for [from, to] in cameras.array_windows() {
+            let motion = motion_between(from, to);
+            sum.distance += motion.distance;
+            sum.turn += motion.turn;
+            sum.zoom += motion.zoom;
         }
         sum
     };
@@ -209,31 +205,27 @@ fn trimmed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {
             keys[i + 1].time - keys[i].time
         }
     };
-    let mut kept: Vec<Key<Camera>> = Vec::new();
-    for (index, key) in with_steps(keys, step).into_iter().enumerate() {
-        // Of two keys that coincide now, the one after the pause is kept.
-        if index > 0 && pauses[index - 1] {
-            kept.pop();
-        }
-        kept.push(key);
-    }
-    kept
+    // Of two keys that coincide now, the one after the pause is kept.
+    let is_kept = pauses.iter().map(|is_pause| !is_pause).chain([true]);
+    let retimed = with_steps(keys, step).into_iter().zip(is_kept);
+    retimed
+        .filter_map(|(key, is_kept)| is_kept.then_some(key))
+        .collect()
 }
 
 /// Returns the keys with new time steps between them.
 fn with_steps(keys: &[Key<Camera>], step: impl Fn(usize) -> f64) -> Vec<Key<Camera>> {
     let mut time = keys[0].time;
-    let mut retimed = Vec::new();
-    for (index, key) in keys.iter().enumerate() {
-        retimed.push(Key {
+    let retimed = keys.iter().enumerate().map(|(index, key)| {
+        if index > 0 {
+            time += step(index - 1);
+        }
+        Key {
             time,
             ..key.clone()
-        });
-        if index + 1 < keys.len() {
-            time += step(index);
         }
-    }
-    retimed
+    });
+    retimed.collect()
 }
 
 fn smoothed(keys: &[Key<Camera>]) -> Vec<Key<Camera>> {

@@ -93,7 +93,7 @@ pub fn simplify(take: &Take, landmarks: &[Vec<Landmark>], tolerance: f64) -> Sim
     search.prune(&mut chosen);
     // Where keys coincide, a curve is shaped by keys farther away than pruning considers.
     let chosen = search.refined(chosen);
-    let keys = search.keys(chosen.iter().copied());
+    let keys = search.keys(&chosen);
     let worst = worst_deviation(&CameraPath::new(&keys), take, landmarks, ends_of(&keys));
     Simplified {
         keys,
@@ -214,8 +214,8 @@ fn jumps(take: &Take, landmarks: &[Vec<Landmark>]) -> BTreeSet<usize> {
 }
 
 impl Search<'_> {
-    fn keys(&self, chosen: impl Iterator<Item = usize>) -> Vec<Key<Camera>> {
-        let key = |sample: usize| {
+    fn keys<'c>(&self, chosen: impl IntoIterator<Item = &'c usize>) -> Vec<Key<Camera>> {
+        let key = |&sample: &usize| {
             let camera = self.cameras.get(sample)?.clone();
             let mut key = Key::new(self.take.samples[sample].0, camera);
             if self.cuts.contains(&sample) {
@@ -223,7 +223,7 @@ impl Search<'_> {
             }
             Some(key)
         };
-        chosen.filter_map(key).collect()
+        chosen.into_iter().filter_map(key).collect()
     }
 
     fn deviation_at(&self, path: &CameraPath, sample: usize) -> f64 {
@@ -250,7 +250,7 @@ impl Search<'_> {
     fn refined(&self, mut chosen: BTreeSet<usize>) -> BTreeSet<usize> {
         loop {
             let samples: Vec<usize> = chosen.iter().copied().collect();
-            let path = CameraPath::new(&self.keys(samples.iter().copied()));
+            let path = CameraPath::new(&self.keys(&samples));
             let stretches = samples.windows(2);
             let worst: Vec<usize> = stretches
                 .filter_map(|ends| self.worst(&path, ends[0] + 1..ends[1]))
@@ -279,7 +279,7 @@ impl Search<'_> {
             window.reverse();
             let before = window.len();
             window.extend(chosen.range(sample + 1..).take(REACH + 1));
-            let path = CameraPath::new(&self.keys(window.iter().copied()));
+            let path = CameraPath::new(&self.keys(&window));
             // The outermost stretches also depend on keys outside the window.
             let first = window[usize::from(before > REACH)];
             let is_cut_off = window.len() - before > REACH;

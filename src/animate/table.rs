@@ -11,6 +11,8 @@ use crate::scene::{
 };
 
 const HEAD: &str = "time,x,y,z,yaw,pitch,roll,projection,projection_distance,orthographic_height";
+/// The columns that a table must have.
+const REQUIRED: [&str; 4] = ["time", "x", "y", "z"];
 
 /// Why a text is not a valid path.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -92,14 +94,9 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         let mut names = names.iter();
         names.position(|other| other.eq_ignore_ascii_case(name))
     };
-    if let Some(missing) = ["time", "x", "y", "z"]
-        .iter()
-        .find(|name| column(name).is_none())
-    {
-        return Err(fail(
-            1,
-            format!("there is no column {missing}; expected {HEAD}"),
-        ));
+    if let Some(missing) = REQUIRED.iter().find(|name| column(name).is_none()) {
+        let what = format!("there is no column {missing}; expected {HEAD}");
+        return Err(fail(1, what));
     }
     let mut keys: Vec<(usize, Key<Camera>)> = Vec::new();
     for record in reader.records() {
@@ -107,16 +104,14 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
         let line = record.position().map_or(1, |place| place.line() as usize);
         let cell = |name: &str| record.get(column(name)?).filter(|cell| !cell.is_empty());
         let number = |name: &'static str, default: f64| match cell(name) {
-            None if ["time", "x", "y", "z"].contains(&name) => {
-                Err(fail(line, format!("{name} is missing")))
-            }
+            None if REQUIRED.contains(&name) => Err(fail(line, format!("{name} is missing"))),
             None => Ok(default),
             Some(cell) => match number_of(cell, delimiter) {
                 Some(number) if number.is_finite() => Ok(number),
-                _ => Err(fail(
-                    line,
-                    format!("{name} must be a number, found {cell:?}"),
-                )),
+                _ => {
+                    let what = format!("{name} must be a number, found {cell:?}");
+                    Err(fail(line, what))
+                }
             },
         };
         let own = Orientation::of(like);
@@ -156,10 +151,8 @@ pub fn from_table(text: &str, like: &Camera) -> Result<Vec<Key<Camera>>, TableEr
     let mut pairs = keys.array_windows();
     if let Some([_, (line, key)]) = pairs.find(|[a, b]| b.1.time - a.1.time < SAME_TIME) {
         let time = format_number(key.time);
-        return Err(fail(
-            *line,
-            format!("there are two lines for the time {time}"),
-        ));
+        let what = format!("there are two lines for the time {time}");
+        return Err(fail(*line, what));
     }
     Ok(keys.into_iter().map(|(_, key)| key).collect())
 }

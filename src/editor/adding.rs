@@ -11,18 +11,18 @@ use crate::scene::{
 };
 
 /// Colours of new objects, used in turn: easy to tell from each other and from a grey floor.
-const COLORS: [[f64; 3]; 8] = [
-    [226.0, 102.0, 82.0],
-    [86.0, 142.0, 214.0],
-    [240.0, 196.0, 92.0],
-    [110.0, 176.0, 110.0],
-    [160.0, 120.0, 204.0],
-    [84.0, 184.0, 180.0],
-    [238.0, 150.0, 84.0],
-    [214.0, 200.0, 184.0],
+const COLORS: [DVec3; 8] = [
+    DVec3::new(226.0, 102.0, 82.0),
+    DVec3::new(86.0, 142.0, 214.0),
+    DVec3::new(240.0, 196.0, 92.0),
+    DVec3::new(110.0, 176.0, 110.0),
+    DVec3::new(160.0, 120.0, 204.0),
+    DVec3::new(84.0, 184.0, 180.0),
+    DVec3::new(238.0, 150.0, 84.0),
+    DVec3::new(214.0, 200.0, 184.0),
 ];
 /// The colour of floors.
-const FLOOR_COLOR: [f64; 3] = [196.0, 192.0, 186.0];
+const FLOOR_COLOR: DVec3 = DVec3::new(196.0, 192.0, 186.0);
 /// Radius of the first light's marker, as a share of the diagonal of the objects' bounding box.
 const MARKER_SHARE: f64 = 0.02;
 
@@ -36,11 +36,11 @@ pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
     };
     let color = colors[scene.color_packs.len() % colors.len()];
     let color_pack = free_pack(scene, colors)
-        .unwrap_or_else(|| insert_pack(scene, &name.to_lowercase(), new_pack(color)).1);
+        .unwrap_or_else(|| insert_pack(scene, &name.to_lowercase(), ColorPack::of_color(color)).1);
     if let Some(pack) = scene.packs_mut().get_mut(&color_pack)
         && *pack == ColorPack::default()
     {
-        *pack = new_pack(color);
+        *pack = ColorPack::of_color(color);
     }
     scene.objects.push(Object::new(name, color_pack, shape));
     Item::object(scene.objects.len() - 1)
@@ -163,25 +163,14 @@ pub fn make_pack_unique(scene: &mut Scene, index: usize) {
     }
 }
 
-/// Returns the color pack for a new object.
-fn new_pack(color: [f64; 3]) -> ColorPack {
-    let color = DVec3::from_array(color);
-    ColorPack {
-        ambient: color,
-        diffuse: color,
-        ..ColorPack::default()
-    }
-}
-
 /// Returns the name of an unused color pack that nobody has edited: with the default values, or with those of a new
 /// object's pack in one of these colours. Other unused ones are left alone: the user may have made them for later.
-fn free_pack(scene: &Scene, colors: &[[f64; 3]]) -> Option<String> {
+fn free_pack(scene: &Scene, colors: &[DVec3]) -> Option<String> {
     let used = scene.used_packs();
-    let is_new = |pack: &ColorPack| {
-        *pack == ColorPack::default() || colors.iter().any(|color| *pack == new_pack(*color))
-    };
+    let new = colors.iter().copied().map(ColorPack::of_color);
+    let new: Vec<ColorPack> = new.chain([ColorPack::default()]).collect();
     let mut packs = scene.color_packs.iter();
-    let free = packs.find(|(name, pack)| !used.contains(name.as_str()) && is_new(pack));
+    let free = packs.find(|(name, pack)| !used.contains(name.as_str()) && new.contains(pack));
     free.map(|(name, _)| name.clone())
 }
 

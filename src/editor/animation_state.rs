@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::edit::Replaced;
-use super::timeline::{REFERENCE_HEIGHT, Timeline, ViewState};
+use super::timeline::{REFERENCE_HEIGHT, Timeline};
 use crate::animate::{CameraPath, Landmark, WorstDeviation, ends_of, pose, shot, worst_deviation};
 use crate::scene::{Animation, Camera, Key, Owners, Scene, Take, Target};
 
@@ -174,11 +174,6 @@ impl AnimationState {
         self.timeline.is_flown = true;
     }
 
-    /// On undo or redo of a step that leads to the scene `target`: restores the view from `before` that step.
-    pub fn restore_view(&mut self, before: ViewState, target: &Scene) {
-        self.timeline.restore_view(before, &self.scene, target);
-    }
-
     /// Updates the shown scene after a change of the scene, the time or the camera that is looked through.
     pub fn update(&mut self, scene: &Arc<Scene>) {
         let is_new = !Arc::ptr_eq(scene, &self.scene);
@@ -219,9 +214,8 @@ impl AnimationState {
             let original = scene.objects.get(index);
             if let Some((shown, original)) = shown.zip(original)
                 && shown.shape != original.shape
-                && let Some(object) = posed.objects.get_mut(index)
             {
-                object.shape.clone_from(&shown.shape);
+                posed.objects[index].shape.clone_from(&shown.shape);
             }
         }
         posed
@@ -307,8 +301,7 @@ fn restore_shape(
     if next.objects[next_index].shape != shown.objects[shown_index].shape {
         return false;
     }
-    if let Some(object) = next.objects.get_mut(next_index) {
-        object.shape.clone_from(&scene.objects[scene_index].shape);
-    }
+    let own = &scene.objects[scene_index].shape;
+    next.objects[next_index].shape.clone_from(own);
     true
 }

@@ -69,33 +69,26 @@ impl Arrangement {
 /// objects is. An empty name takes them out of their groups. Returns their items in the new order.
 pub fn group(scene: &mut Scene, members: &[usize], name: &str) -> Vec<Item> {
     let mut members = put_in_order(scene, members);
-    if name.is_empty() {
-        for index in &members {
-            scene.objects[*index].group.clear();
-        }
+    let member_set: HashSet<&usize> = members.iter().collect();
+    let is_outsider = |index: &usize| !member_set.contains(index);
+    let is_existing_member =
+        |index: &usize| is_outsider(index) && scene.objects[*index].group == name;
+    let count = scene.objects.len();
+    let last = (0..count).rfind(is_existing_member);
+    let before = last.or_else(|| members.first()?.checked_sub(1));
+    let anchor = before.or_else(|| (0..count).find(is_outsider));
+    if let Some(anchor) = anchor.filter(|_| !name.is_empty()) {
+        let arrangement = Arrangement {
+            objects: members,
+            anchor,
+            is_after: before.is_some(),
+            group: Some(name.to_owned()),
+        };
+        let arranged = arrange(scene, arrangement).into_iter();
+        members = arranged.map(|item| item.index).collect();
     } else {
-        let member_set: HashSet<&usize> = members.iter().collect();
-        let is_outsider = |index: &usize| !member_set.contains(index);
-        let is_existing_member =
-            |index: &usize| is_outsider(index) && scene.objects[*index].group == name;
-        let count = scene.objects.len();
-        let last = (0..count).rfind(is_existing_member);
-        let before = last.or_else(|| members.first()?.checked_sub(1));
-        if let Some(anchor) = before.or_else(|| (0..count).find(is_outsider)) {
-            let arranged = arrange(
-                scene,
-                Arrangement {
-                    objects: members,
-                    anchor,
-                    is_after: before.is_some(),
-                    group: Some(name.to_owned()),
-                },
-            );
-            members = arranged.into_iter().map(|item| item.index).collect();
-        } else {
-            for index in &members {
-                name.clone_into(&mut scene.objects[*index].group);
-            }
+        for index in &members {
+            name.clone_into(&mut scene.objects[*index].group);
         }
     }
     let indices = put_in_order(scene, &members);
@@ -128,11 +121,7 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
     let at = anchor + usize::from(arrangement.is_after);
     let new_indices = at..at + moved.len();
     if is_in_display_order {
-        // Moved one by one, so that the rest of the list stays shared with earlier undo states.
-        let taken = moved.iter().rev().map(|index| scene.objects.remove(*index));
-        for object in taken.collect::<Vec<_>>() {
-            scene.objects.insert(at, object);
-        }
+        move_within(&mut scene.objects, &moved, at);
     } else {
         order.splice(at..at, moved);
         reorder(scene, &order);
@@ -143,6 +132,15 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         }
     }
     new_indices.map(Item::object).collect()
+}
+
+/// Takes out the items at these indices, in ascending order, and inserts them again before the one that is at index
+/// `to` by then: one by one, so that the rest of the list stays shared with earlier undo states.
+pub fn move_within<T: Clone>(list: &mut List<T>, indices: &[usize], to: usize) {
+    let taken = indices.iter().rev().map(|index| list.remove(*index));
+    for item in taken.collect::<Vec<_>>() {
+        list.insert(to, item);
+    }
 }
 
 fn reorder(scene: &mut Scene, order: &[usize]) {

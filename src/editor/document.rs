@@ -416,7 +416,8 @@ impl Editor {
     }
 
     fn return_to(&mut self, state: Snapshot) {
-        self.animation_state.restore_view(state.view, &state.scene);
+        let timeline = &mut self.animation_state.timeline;
+        timeline.restore_view(state.view, &self.scene, &state.scene);
         self.selection = state.selection;
         self.set_scene(self.refreshed(&state.scene));
     }

@@ -1,6 +1,6 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -13,7 +13,7 @@ use crate::scene::{
 use crate::words::{counted, listed};
 
 use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
-use super::arrange::{Arrangement, arrange, group};
+use super::arrange::{Arrangement, arrange, group, move_within};
 use super::clipboard::paste;
 use super::item::{Item, ItemKind};
 
@@ -121,10 +121,10 @@ impl Replaced {
 
     /// Returns whether a target is overwritten that belongs to the light or object at index `index`.
     pub fn holds(&self, target: &Target, index: Option<usize>) -> bool {
-        let owners = match target {
-            Target::AmbientIntensity => return self.ambient,
-            Target::LightIntensity(_) | Target::LightPosition(_) => &self.lights,
-            Target::ObjectPosition(_) | Target::ObjectRotation(_) => &self.objects,
+        let owners = match target.owner() {
+            None => return self.ambient,
+            Some(Owner::Light(_)) => &self.lights,
+            Some(Owner::Object(_)) => &self.objects,
         };
         index.is_some_and(|index| owners.contains(&index))
     }
@@ -204,6 +204,10 @@ impl Edit {
     /// The name of the step in the undo history.
     pub fn label(&self, scene: &Scene) -> String {
         let name = |item: Item| item.name(scene).unwrap_or_default().to_owned();
+        let names = |items: &[Item]| match items {
+            [item] => name(*item),
+            _ => format!("{} items", items.len()),
+        };
         match self {
             Self::Camera(_, field) => format!("Camera: {field}"),
             Self::Background(_) => "Background".to_owned(),
@@ -225,18 +229,12 @@ impl Edit {
             Self::Rename(item, to) if to.is_empty() => format!("Rename {}", name(*item)),
             Self::Rename(item, to) => format!("Rename {} to {to}", name(*item)),
             Self::Duplicate(item) => format!("Duplicate {}", name(*item)),
-            Self::Delete(items) => match items[..] {
-                [item] => format!("Delete {}", name(item)),
-                _ => format!("Delete {} items", items.len()),
-            },
-            Self::Move(items, _) => match items[..] {
-                [item] => format!("Move {}", name(item)),
-                _ => format!("Move {} items", items.len()),
-            },
-            Self::Arrange(arrangement) => match arrangement.objects[..] {
-                [one] => format!("Move {}", name(Item::object(one))),
-                _ => format!("Move {} items", arrangement.objects.len()),
-            },
+            Self::Delete(items) => format!("Delete {}", names(items)),
+            Self::Move(items, _) => format!("Move {}", names(items)),
+            Self::Arrange(arrangement) => {
+                let objects = arrangement.objects.iter().copied().map(Item::object);
+                format!("Move {}", names(&objects.collect::<Vec<_>>()))
+            }
             Self::MakePackUnique(index) => {
                 format!("{}: own color pack", name(Item::object(*index)))
             }
@@ -270,7 +268,7 @@ impl Edit {
             Self::AddObject(name, shape) => return Ok(vec![add_object(scene, name, shape)]),
             Self::Import(parts) => return Ok(vec![Item::object(scene.add_parts(parts))]),
             Self::Join(joined) => {
-                return Ok(scene.join(joined).map(Item::object).into_iter().collect());
+                return Ok(scene.join(&joined).map(Item::object).into_iter().collect());
             }
             Self::Paste(pasted, _) => return Ok(paste(scene, &pasted)),
             Self::Separate(index) => {
@@ -403,7 +401,9 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
     let count = kind.count(scene);
     let exists = |item: &&Item| item.kind == kind && item.index < count;
     let moved = items.iter().filter(exists).map(|item| item.index);
-    let moved: BTreeSet<usize> = moved.collect();
+    let mut moved: Vec<usize> = moved.collect();
+    moved.sort_unstable();
+    moved.dedup();
     let to = to.min(count - moved.len());
     match kind {
         ItemKind::Object => move_within(&mut scene.objects, &moved, to),
@@ -417,21 +417,12 @@ fn move_items(scene: &mut Scene, items: Vec<Item>, to: usize) -> Vec<Item> {
             }
         }
     }
-    let old_indices: Vec<usize> = moved.into_iter().collect();
     let moved_item = |item: &Item| {
-        let rank = old_indices.binary_search(&item.index).ok()?;
+        let rank = moved.binary_search(&item.index).ok()?;
         Some(Item {
             kind,
             index: to + rank,
         })
     };
     items.iter().filter(exists).filter_map(moved_item).collect()
-}
-
-/// Takes out the items at these indices and inserts them again before the one that is at index `to` by then.
-fn move_within<T: Clone>(list: &mut List<T>, indices: &BTreeSet<usize>, to: usize) {
-    let taken = indices.iter().rev().map(|index| list.remove(*index));
-    for item in taken.collect::<Vec<_>>() {
-        list.insert(to, item);
-    }
 }

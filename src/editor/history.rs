@@ -180,13 +180,7 @@ mod tests {
         let mut scene = Scene::empty();
         let shape = Shape::examples(DVec3::ZERO, 1.0).remove(0);
         scene.objects = (0..100_000)
-            .map(|number| Object {
-                name: format!("Object {number}"),
-                color_pack: "pack 1".to_owned(),
-                shape: shape.clone(),
-                visible: true,
-                group: String::new(),
-            })
+            .map(|number| Object::new(format!("Object {number}"), "pack 1", shape.clone()))
             .collect();
         scene
     }

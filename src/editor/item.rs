@@ -79,14 +79,8 @@ impl Item {
     /// The name of the color pack of an object or of a light's marker; for a color pack, its own name.
     pub fn color_pack(self, scene: &Scene) -> Option<&str> {
         match self.kind {
-            ItemKind::Light => {
-                let marker = scene.lights.get(self.index)?.marker.as_ref();
-                marker.map(|marker| marker.color_pack.as_str())
-            }
-            ItemKind::Object => {
-                let object = scene.objects.get(self.index);
-                object.map(|object| object.color_pack.as_str())
-            }
+            ItemKind::Light => Some(&scene.lights.get(self.index)?.marker.as_ref()?.color_pack),
+            ItemKind::Object => Some(&scene.objects.get(self.index)?.color_pack),
             ItemKind::Pack => self.name(scene),
         }
     }
@@ -102,19 +96,10 @@ impl Item {
 
     /// The name of the item, if the scene has it.
     pub fn name(self, scene: &Scene) -> Option<&str> {
-        match self.kind {
-            ItemKind::Light => scene
-                .lights
-                .get(self.index)
-                .map(|light| light.name.as_str()),
-            ItemKind::Object => scene
-                .objects
-                .get(self.index)
-                .map(|object| object.name.as_str()),
-            ItemKind::Pack => scene
-                .color_packs
-                .get_index(self.index)
-                .map(|(name, _)| name.as_str()),
-        }
+        Some(match self.kind {
+            ItemKind::Light => &scene.lights.get(self.index)?.name,
+            ItemKind::Object => &scene.objects.get(self.index)?.name,
+            ItemKind::Pack => scene.color_packs.get_index(self.index)?.0,
+        })
     }
 }

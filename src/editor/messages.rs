@@ -13,8 +13,6 @@ use crate::words::{counted, listed};
 const EDIT: &str = "edit";
 /// Value of [`Message::about`] for messages about missing meshes.
 const MESHES: &str = "meshes";
-/// Value of [`Message::about`] for messages about meshes whose files are broken.
-const BROKEN: &str = "broken meshes";
 
 impl Editor {
     fn push_message(&mut self, is_error: bool, about: &'static str, text: String) {
@@ -88,17 +86,6 @@ impl Editor {
         self.report_error_in(MESHES, text);
     }
 
-    /// Reports that another program has overwritten a mesh file with something that is no mesh.
-    pub(super) fn report_broken_mesh(&mut self, why: &str) {
-        let text = format!("{why}; the version read before is kept and saved with the scene");
-        self.report_error_in(BROKEN, text);
-    }
-
-    /// Dismisses the message about broken mesh files: one of them can be read again.
-    pub(super) fn dismiss_broken_meshes(&mut self) {
-        self.begin(BROKEN);
-    }
-
     /// Returns a message about what is lost by a step named `label` that deletes things, or joins or splits the
     /// objects `joined`; `None` if nothing is.
     pub(super) fn lost(&self, label: &str, joined: &[usize], next: &Scene) -> Option<String> {
@@ -123,24 +110,21 @@ impl Editor {
     /// Returns clauses about lost appearance: color packs of all joined objects but the first, smoothness, and which
     /// of them were hidden.
     fn lost_appearance(&self, joined: &[usize]) -> Vec<String> {
-        let Some((first, others)) = joined.split_first() else {
+        let objects = joined.iter();
+        let objects = objects.filter_map(|&index| self.scene.objects.get(index));
+        let objects: Vec<&Object> = objects.collect();
+        let Some((first, others)) = objects.split_first() else {
             return Vec::new();
         };
-        let pack = |index: &usize| Some(&self.scene.objects.get(*index)?.color_pack);
-        let own_pack = pack(first).map_or("", String::as_str);
-        let packs: IndexSet<&String> = others.iter().filter_map(pack).collect();
+        let own_pack = &first.color_pack;
+        let packs: IndexSet<&String> = others.iter().map(|object| &object.color_pack).collect();
         let packs = packs.into_iter().filter(|pack| *pack != own_pack).cloned();
         let packs = listed(packs)
             .map(|names| format!("all of it uses {own_pack} now, including what used {names}"));
-        let flat = others.is_empty().then_some(*first).filter(|&index| {
-            let object = self.scene.objects.get(index);
-            object.is_some_and(Object::is_smooth)
-        });
-        let flat = flat.map(|_| "its faces are shaded flat now".to_owned());
-        let objects = joined
-            .iter()
-            .filter_map(|&index| self.scene.objects.get(index));
-        let (seen, hidden): (Vec<_>, Vec<_>) = objects.partition(|object| object.visible);
+        let is_flat_now = others.is_empty() && first.is_smooth();
+        let flat = is_flat_now.then(|| "its faces are shaded flat now".to_owned());
+        let (seen, hidden): (Vec<_>, Vec<_>) =
+            objects.into_iter().partition(|object| object.visible);
         let hidden = hidden.iter().map(|object| object.name.clone());
         let hidden = listed(hidden).filter(|_| !seen.is_empty());
         let hidden = hidden.map(|names| format!("what was hidden is visible now ({names})"));

@@ -9,6 +9,9 @@ use super::own_file::OwnFile;
 use crate::files::{Stamp, is_same_file};
 use crate::scene::{Document, Leftover, MeshSource, Scene};
 
+/// Value of `Message::about` for messages about meshes whose files are broken.
+const BROKEN: &str = "broken meshes";
+
 impl Editor {
     /// Opens unsaved work that another run of the program left behind. If others have written its file since, the
     /// user is asked, as for any change from outside.
@@ -31,19 +34,15 @@ impl Editor {
 
     /// Whether another program has written the document's file since this window read or wrote it.
     pub fn is_changed_outside(&self) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(path), Some(stamp)) => stamp.is_touched(path) && stamp.is_outdated(path),
-            _ => false,
-        }
+        let known = self.path.as_ref().zip(self.stamp.as_ref());
+        known.is_some_and(|(path, stamp)| stamp.is_touched(path) && stamp.is_outdated(path))
     }
 
     /// Whether saving to `path` would replace something in the document's own file that this window has not
     /// seen.
     pub fn would_lose(&self, path: &Path) -> bool {
-        match (&self.path, &self.stamp) {
-            (Some(own), Some(stamp)) => is_same_file(own, path) && stamp.is_outdated(own),
-            _ => false,
-        }
+        let known = self.path.as_ref().zip(self.stamp.as_ref());
+        known.is_some_and(|(own, stamp)| is_same_file(own, path) && stamp.is_outdated(own))
     }
 
     /// Replaces the scene with what another program has written, as a step that can be undone.
@@ -96,7 +95,8 @@ impl Editor {
             self.reread.push(read);
         }
         if self.broken.len() < before {
-            self.dismiss_broken_meshes();
+            // One of them can be read again.
+            self.begin(BROKEN);
         }
         let scene = self.refreshed(&self.scene);
         if Arc::ptr_eq(&scene, &self.scene) {
@@ -125,11 +125,13 @@ impl Editor {
         self.own_file != OwnFile::Whole || !self.scene.files_in_use(&self.broken).is_empty()
     }
 
+    /// Notes that another program has overwritten a mesh file with something that is no mesh.
     fn note_broken_mesh(&mut self, full: PathBuf, why: &str) {
         let one = BTreeSet::from([full]);
         if !self.scene.files_in_use(&one).is_empty() {
             self.broken.extend(one);
-            self.report_broken_mesh(why);
+            let text = format!("{why}; the version read before is kept and saved with the scene");
+            self.report_error_in(BROKEN, text);
         }
     }
 

@@ -46,10 +46,16 @@ impl From<Keys> for Selection {
 impl Selection {
     /// The name of the selected group: all of its objects, at least two, and nothing else are selected.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
-        let [first, _, ..] = self.items() else {
-            return None;
-        };
-        let group = group_of(scene, *first)?;
+        self.whole_group(scene).filter(|_| self.items().len() > 1)
+    }
+
+    /// Whether the selection is exactly one whole group, which may have a single member.
+    pub fn is_group(&self, scene: &Scene) -> bool {
+        self.whole_group(scene).is_some()
+    }
+
+    fn whole_group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
+        let group = group_of(scene, *self.items().first()?)?;
         let is_member = |item: &Item| group_of(scene, *item) == Some(group);
         let members = scene.objects.iter().filter(|object| object.group == group);
         let is_whole = self.items().iter().all(is_member) && members.count() == self.items().len();
@@ -103,20 +109,6 @@ impl Selection {
             [one] => self.toggled(*one),
             // A whole group is only picked if nothing of it was selected.
             all => Self::all(self.items().iter().chain(all).copied()),
-        }
-    }
-
-    /// Whether the selection is exactly one whole group, which may have a single member.
-    pub fn is_group(&self, scene: &Scene) -> bool {
-        let only = self.item().filter(|item| item.kind == ItemKind::Object);
-        let only = only.and_then(|item| scene.objects.get(item.index));
-        let is_only_member = |object: &Object| {
-            let groups = scene.objects.iter().map(|object| &object.group);
-            !object.group.is_empty() && groups.filter(|group| **group == object.group).count() == 1
-        };
-        match self.items() {
-            [_] => only.is_some_and(is_only_member),
-            _ => self.group(scene).is_some(),
         }
     }
 
@@ -175,11 +167,7 @@ impl Selection {
     /// Returns for each of `count` objects whether it is selected: faster than [`Self::has`] for many objects.
     pub fn object_marks(&self, count: usize) -> Vec<bool> {
         let mut marks = vec![false; count];
-        for item in self
-            .items()
-            .iter()
-            .filter(|item| item.kind == ItemKind::Object)
-        {
+        for item in self.of_kind(ItemKind::Object) {
             if let Some(mark) = marks.get_mut(item.index) {
                 *mark = true;
             }
@@ -188,13 +176,12 @@ impl Selection {
     }
 
     /// Whether all of these items are selected.
-    pub fn has_all(&self, items: impl ExactSizeIterator<Item = Item>) -> bool {
+    pub fn has_all(&self, mut items: impl ExactSizeIterator<Item = Item>) -> bool {
         // The usual case: fewer items are selected.
         if self.items().len() < items.len() {
             return false;
         }
         let selected: HashSet<&Item> = self.items().iter().collect();
-        let mut items = items;
         items.all(|item| selected.contains(&item))
     }
 

@@ -236,7 +236,7 @@ impl Animation {
 
     /// Returns the frame shown at a time, counted from 1.
     pub fn frame_at(&self, time: f64) -> u64 {
-        ((time.max(0.0) + SAME_TIME) * self.frames_per_second).floor() as u64 + 1
+        Self::frames_in(time.max(0.0), self.frames_per_second)
     }
 }
 

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::file::{DEMO_TEXT, Document};
-use super::shape::{Mesh, MeshSource};
 use super::whole::Scene;
 use crate::mesh::read_ply;
 
@@ -54,19 +53,11 @@ impl Example {
             .mesh
             .and_then(|bytes| read_ply(bytes).ok())
             .map(Arc::new);
-        if let Some(loaded) = triangles {
+        if let Some(triangles) = triangles {
             document.scene.change_meshes(|mesh| {
-                let mut source = mesh.source.clone();
-                if let MeshSource::File {
-                    triangles, problem, ..
-                } = &mut source
-                {
-                    (*triangles, *problem) = (Arc::clone(&loaded), None);
-                }
-                Some(Mesh {
-                    source,
-                    ..mesh.clone()
-                })
+                let mut read = mesh.clone();
+                read.source.set_read(Ok(Arc::clone(&triangles)));
+                Some(read)
             });
         }
         document

@@ -46,14 +46,12 @@ pub enum SceneError {
         path: PathBuf,
     },
     /// The file is larger than the limit for scenes; nothing was read.
-    #[error("{path}: a scene file may have at most {limit} bytes; this one has {found}", path = .path.display())]
+    #[error("{path}: a scene file may have at most {limit} bytes; this one has {found}", path = .path.display(), limit = MAX_BYTES)]
     TooLarge {
         /// The file.
         path: PathBuf,
         /// Its length in bytes.
         found: u64,
-        /// Largest number of bytes that is read.
-        limit: u64,
     },
     /// The scene cannot be serialized; no file was touched.
     #[error("the scene cannot be written: {0}")]
@@ -171,13 +169,14 @@ impl Document {
 
     fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let refuse_problem =
+            |Problem { path, sentence }| refuse(name, text, locate(text, &path), sentence);
         if let Some(version) = claimed_version(text).filter(|&version| version > VERSION) {
-            let problem = check(&Scene {
+            let newer = Scene {
                 version,
                 ..Scene::empty()
-            })
-            .err();
-            return Err(refuse_problem(name, text, problem));
+            };
+            check(&newer).map_err(refuse_problem)?;
         }
         let scene: Scene = options().from_str(text).map_err(|error| {
             let offset = offset_of(text, error.span.start.line, error.span.start.col);
@@ -201,13 +200,11 @@ impl Document {
             let prefix = if is_end { "the file ends here; " } else { "" };
             refuse(name, text, at, format!("{prefix}{sentence}"))
         })?;
-        match check(&scene) {
-            Ok(()) => Ok(Self {
-                header: header(text).to_owned(),
-                scene,
-            }),
-            Err(problem) => Err(refuse_problem(name, text, Some(problem))),
-        }
+        check(&scene).map_err(refuse_problem)?;
+        Ok(Self {
+            header: header(text).to_owned(),
+            scene,
+        })
     }
 
     /// Creates a document without a header.
@@ -262,11 +259,7 @@ impl Document {
         if found <= MAX_BYTES {
             return Ok(());
         }
-        Err(SceneError::TooLarge {
-            path: path.to_owned(),
-            found,
-            limit: MAX_BYTES,
-        })
+        Err(too_large(path, found))
     }
 
     /// Like [`Self::save`], for a document that [`Self::for_path`] returned for this path. Also returns the new stamp.
@@ -276,11 +269,7 @@ impl Document {
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
         let text = self.to_text()?;
         Self::check_length(path, &text)?;
-        let disk_error = |source| SceneError::Disk {
-            verb: "write",
-            path: path.to_owned(),
-            source,
-        };
+        let disk_error = |source| disk_error("write", path, source);
         let existing = read_file(path).ok();
         let existing = existing.and_then(|bytes| String::from_utf8(bytes).ok());
         let loses_comments = existing.is_some_and(|text| self.loses_comments_of(&text));
@@ -326,39 +315,32 @@ fn pretty(value: &impl serde::Serialize) -> Result<String, SceneError> {
 /// [`SceneError`] if the file is unreadable, too large or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, SceneError> {
     let bytes = read_bounded(path)?;
-    String::from_utf8(bytes).map_err(|error| SceneError::Disk {
-        verb: "read",
-        path: path.to_owned(),
-        source: io::Error::new(io::ErrorKind::InvalidData, error),
+    String::from_utf8(bytes).map_err(|error| {
+        let source = io::Error::new(io::ErrorKind::InvalidData, error);
+        disk_error("read", path, source)
     })
 }
 
 fn read_bounded(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let disk = |source| SceneError::Disk {
-        verb: "read",
-        path: path.to_owned(),
-        source,
-    };
     let read = File::open(path).and_then(|file| read_at_most(file, MAX_BYTES));
-    read.map_err(disk)?.map_err(|found| SceneError::TooLarge {
-        path: path.to_owned(),
-        found,
-        limit: MAX_BYTES,
-    })
+    read.map_err(|source| disk_error("read", path, source))?
+        .map_err(|found| too_large(path, found))
+}
+
+fn disk_error(verb: &'static str, path: &Path, source: io::Error) -> SceneError {
+    let path = path.to_owned();
+    SceneError::Disk { verb, path, source }
+}
+
+fn too_large(path: &Path, found: u64) -> SceneError {
+    let path = path.to_owned();
+    SceneError::TooLarge { path, found }
 }
 
 fn options() -> ron::Options {
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)
         .with_recursion_limit(MAX_DEPTH)
-}
-
-fn refuse_problem(name: &str, text: &str, problem: Option<Problem>) -> SceneError {
-    let Problem { path, sentence } = problem.unwrap_or(Problem {
-        path: Vec::new(),
-        sentence: "not a scene".to_owned(),
-    });
-    refuse(name, text, locate(text, &path), sentence)
 }
 
 /// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports

@@ -7,7 +7,7 @@ use super::coincidence::{Coincidence, Overlap, coincidences};
 use super::direction::unit;
 use super::frame::CoordinateFrame;
 use super::object::Object;
-use super::shape::Shape;
+use super::shape::{Outline, Shape};
 use super::whole::Scene;
 
 /// Largest number of pairs of an object and a light that are examined.
@@ -46,11 +46,11 @@ pub enum About {
 }
 
 impl Hint {
-    fn new(words: String, about: About, is_duplicate: bool) -> Self {
+    fn new(words: String, about: About) -> Self {
         Self {
             words,
             about,
-            is_duplicate,
+            is_duplicate: false,
         }
     }
 }
@@ -65,18 +65,17 @@ pub fn hints(scene: &Scene) -> Vec<Hint> {
 /// Returns the hints about the position of the camera.
 pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let mut add = |words, about, is_duplicate| hints.push(Hint::new(words, about, is_duplicate));
     let extent = CoordinateFrame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let eye = scene.camera.position;
     for (index, object) in visible(scene) {
         let name = &object.name;
         if is_inside(&object.shape, eye) {
             let words = format!("The camera is inside {name}");
-            add(words, About::Camera, false);
+            hints.push(Hint::new(words, About::Camera));
         }
         if is_edge_on(&object.shape, &scene.camera, extent) {
             let words = format!("{name} is seen edge-on: the camera is in its plane");
-            add(words, About::Object(index), false);
+            hints.push(Hint::new(words, About::Object(index)));
         }
     }
     hints
@@ -90,7 +89,6 @@ fn visible(scene: &Scene) -> impl Iterator<Item = (usize, &Object)> {
 /// Returns all other hints, which do not depend on the camera.
 pub fn scene_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let mut add = |words, about, is_duplicate| hints.push(Hint::new(words, about, is_duplicate));
     let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIGHT_PAIRS;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let is_shining = light.visible && light.intensity > 0.0;
@@ -98,10 +96,10 @@ pub fn scene_hints(scene: &Scene) -> Vec<Hint> {
             let name = &object.name;
             if is_on(&object.shape, light.position) {
                 let words = format!("{} is on the surface of {name}", light.name);
-                add(words, About::Light(index), false);
+                hints.push(Hint::new(words, About::Light(index)));
             } else if is_inside(&object.shape, light.position) {
                 let words = format!("{} is inside {name}, which blocks its light", light.name);
-                add(words, About::Light(index), false);
+                hints.push(Hint::new(words, About::Light(index)));
             }
         }
     }
@@ -111,19 +109,18 @@ pub fn scene_hints(scene: &Scene) -> Vec<Hint> {
     for (index, (name, _)) in packs.filter(|_| !scene.objects.is_empty()) {
         if !used_packs.contains(name.as_str()) {
             let words = format!("No object uses {name}");
-            add(words, About::Pack(index), false);
+            hints.push(Hint::new(words, About::Pack(index)));
         }
     }
     let centre = CoordinateFrame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
-    add_coincident(scene, centre, &mut add);
+    add_coincident(scene, centre, &mut hints);
     hints
 }
 
 /// Adds hints about visible objects that share a surface. Coordinates are taken relative to `centre`.
-fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, About, bool)) {
+fn add_coincident(scene: &Scene, centre: DVec3, hints: &mut Vec<Hint>) {
     let mut last = None;
-    let found = coincidences(&scene.objects, centre).into_iter();
-    for found in found {
+    for found in coincidences(&scene.objects, centre) {
         let Coincidence {
             later,
             earlier,
@@ -147,7 +144,10 @@ fn add_coincident(scene: &Scene, centre: DVec3, add: &mut impl FnMut(String, Abo
         } else {
             format!("{name} lies in the surface of {other}, which comes first and is shown there")
         };
-        add(words, About::Object(later), is_duplicate);
+        hints.push(Hint {
+            is_duplicate,
+            ..Hint::new(words, About::Object(later))
+        });
     }
 }
 
@@ -163,30 +163,26 @@ fn is_inside(shape: &Shape, point: DVec3) -> bool {
 }
 
 fn is_on(shape: &Shape, point: DVec3) -> bool {
-    let on_plane = |plane_point: DVec3, normal: DVec3| {
-        let distance = (point - plane_point)
-            .dot(unit(normal).unwrap_or_default())
-            .abs();
-        distance <= ON_SURFACE * (point.length() + plane_point.length())
-    };
-    match shape {
-        Shape::Sphere(ball) => {
-            let distance = (ball.center.distance(point) - ball.radius).abs();
-            distance <= ON_SURFACE * (ball.radius + point.length())
-        }
-        Shape::Plane(plane) => on_plane(plane.point, plane.normal),
-        Shape::Disc(disc) => {
-            on_plane(disc.center, disc.normal) && disc.center.distance(point) <= disc.radius
-        }
-        Shape::Triangle(triangle) => {
-            let [a, b, c] = triangle.corners();
-            let normal = (b - a).cross(c - a);
-            let side = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(normal);
-            let sides = [side(a, b), side(b, c), side(c, a)];
-            on_plane(a, normal) && sides.iter().all(|side| *side >= 0.0)
-        }
-        Shape::Mesh(_) => false,
+    if let Shape::Sphere(ball) = shape {
+        let distance = (ball.center.distance(point) - ball.radius).abs();
+        return distance <= ON_SURFACE * (ball.radius + point.length());
     }
+    let Some(piece) = shape.plane_piece() else {
+        return false;
+    };
+    let height = (point - piece.point).dot(piece.normal).abs();
+    let is_on_plane = height <= ON_SURFACE * (point.length() + piece.point.length());
+    let is_within = || match piece.outline {
+        Outline::Endless => true,
+        Outline::Disc(radius) => piece.point.distance(point) <= radius,
+        Outline::Triangle([a, b, c]) => {
+            let side = |from: DVec3, to: DVec3| (to - from).cross(point - from).dot(piece.normal);
+            [side(a, b), side(b, c), side(c, a)]
+                .iter()
+                .all(|side| *side >= 0.0)
+        }
+    };
+    is_on_plane && is_within()
 }
 
 fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {

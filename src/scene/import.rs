@@ -1,6 +1,5 @@
 //! Turning the parts of a mesh file into objects of a scene.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
@@ -9,13 +8,10 @@ use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
 use super::names::Names;
-use super::object::{Light, LightObj, Object};
+use super::object::{Light, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
 use super::whole::Scene;
 use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
-
-/// The color packs created for the parts of a file, by the names that the parts asked for.
-type PacksOfParts = HashMap<String, Vec<(ColorPack, String)>>;
 
 /// Name of the color pack of parts without colours.
 const PLAIN_PACK: &str = "mesh";
@@ -60,10 +56,9 @@ impl Scene {
     pub fn add_parts(&mut self, parts: Vec<Part>) -> usize {
         let first = self.objects.len();
         let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
-        let mut packs = PacksOfParts::default();
         let mut pack_names = Names::new(self.color_packs.keys().map(String::as_str));
         for part in parts {
-            let color_pack = self.pack_of(part.colors.as_ref(), (&mut packs, &mut pack_names));
+            let color_pack = self.pack_of(part.colors.as_ref(), &mut pack_names);
             let Part {
                 name, triangles, ..
             } = part;
@@ -77,27 +72,15 @@ impl Scene {
     }
 
     /// Returns the name of the color pack for a part. An existing equal pack is reused.
-    fn pack_of(
-        &mut self,
-        colors: Option<&PartColors>,
-        (packs, names): (&mut PacksOfParts, &mut Names),
-    ) -> String {
+    fn pack_of(&mut self, colors: Option<&PartColors>, names: &mut Names) -> String {
         let (wanted, pack) = match colors {
             None => (PLAIN_PACK.to_owned(), plain_pack()),
             Some(colors) => (valid_name(&colors.name), color_pack(colors)),
         };
-        if self.color_packs.get(&wanted) == Some(&pack) {
-            return wanted;
-        }
-        let created = packs.entry(wanted.clone()).or_default();
-        if let Some((_, name)) = created.iter().find(|(other, _)| *other == pack) {
-            return name.clone();
-        }
         if let Some(name) = self.pack_like(&wanted, &pack) {
             return name.to_owned();
         }
         let name = names.take(&wanted);
-        created.push((pack.clone(), name.clone()));
         self.packs_mut().insert(name.clone(), pack);
         name
     }
@@ -125,7 +108,7 @@ impl Scene {
                 name: name.to_owned(),
                 position: middle + direction * size,
                 intensity,
-                marker: None::<LightObj>,
+                marker: None,
                 visible: true,
             });
         }
@@ -141,10 +124,8 @@ fn reference_to(path: &Path) -> Option<String> {
 fn plain_pack() -> ColorPack {
     let clay = DVec3::new(214.0, 200.0, 184.0);
     ColorPack {
-        ambient: clay,
-        diffuse: clay,
         specular: DVec3::splat(60.0),
-        ..ColorPack::default()
+        ..ColorPack::of_color(clay)
     }
 }
 

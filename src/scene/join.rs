@@ -63,7 +63,7 @@ impl Scene {
     /// Replaces the triangles and meshes at these indices (ascending) by one mesh with the name and the color pack
     /// of the first. Returns the index of the mesh, or `None` if any other shape is among them, or a mesh whose file
     /// could not be read.
-    pub fn join(&mut self, joined: Vec<usize>) -> Option<usize> {
+    pub fn join(&mut self, joined: &[usize]) -> Option<usize> {
         let first = *joined.first()?;
         let (mut numbers, mut points) = (HashMap::new(), Vec::new());
         let mut number = |point: DVec3| {
@@ -73,7 +73,7 @@ impl Scene {
             })
         };
         let (mut faces, mut smooth) = (Vec::new(), 0.0_f64);
-        for &index in &joined {
+        for &index in joined {
             match &self.objects.get(index)?.shape {
                 Shape::Triangle(triangle) => faces.push(triangle.corners().map(&mut number)),
                 Shape::Mesh(mesh) if mesh.source.problem().is_some() => return None,
@@ -89,39 +89,26 @@ impl Scene {
             smooth,
             ..Mesh::of(Triangles::new(points, faces).ok()?).centred()
         };
-        let removed = joined[1..].to_vec();
-        // If all members of the group are joined, the mesh is in no group.
-        let group = &self.objects[first].group;
-        let is_in_group = |object: &&Object| object.group == *group;
-        let members = self.objects.iter().filter(is_in_group).count();
-        let own = joined.iter().filter_map(|&index| self.objects.get(index));
-        let group = if own.filter(is_in_group).count() < members {
-            group.clone()
-        } else {
-            String::new()
+        let before = self.objects.clone();
+        let own: Vec<&Object> = joined.iter().map(|&index| &before[index]).collect();
+        let is_in_group = |object: &&Object| object.group == own[0].group;
+        let members = before.iter().filter(is_in_group).count();
+        let position = mesh.position;
+        let mut joint = Object {
+            shape: mesh.into(),
+            visible: own.iter().any(|object| object.visible),
+            ..own[0].clone()
         };
-        let mut own = joined.iter().filter_map(|&index| self.objects.get(index));
-        let is_visible = own.any(|object| object.visible);
-        let mut remaining = joined.into_iter().peekable();
-        let objects = self
-            .objects
-            .iter()
-            .enumerate()
-            .filter_map(|(index, object)| {
-                if remaining.next_if_eq(&index).is_none() {
-                    return Some(object.clone());
-                }
-                (index == first).then(|| Object {
-                    shape: mesh.clone().into(),
-                    group: group.clone(),
-                    visible: is_visible,
-                    ..object.clone()
-                })
-            });
-        let objects = objects.collect::<List<_>>();
-        let before = std::mem::replace(&mut self.objects, objects);
-        let removed = removed.iter().map(|&index| &before[index]);
-        self.keep_tracks_of(&before[first], mesh.position, removed);
+        // If all members of the group are joined, the mesh is in no group.
+        if own.iter().copied().filter(is_in_group).count() == members {
+            joint.group.clear();
+        }
+        let removed: HashSet<usize> = joined[1..].iter().copied().collect();
+        let kept = before.iter().enumerate();
+        let kept = kept.filter(|(index, _)| !removed.contains(index));
+        self.objects = kept.map(|(_, object)| object.clone()).collect();
+        self.objects[first] = joint;
+        self.keep_tracks_of(own[0], position, own[1..].iter().copied());
         Some(first)
     }
 
@@ -225,7 +212,7 @@ mod tests {
         assert_eq!(scene.connected_triangles(first), [first]);
         let others = scene.connected_triangles(first + 1);
         assert_eq!(others.len(), all.len() - 1);
-        assert_eq!(scene.join(all), Some(first));
+        assert_eq!(scene.join(&all), Some(first));
         assert!(scene.objects[first].visible);
     }
 
@@ -240,7 +227,7 @@ mod tests {
             .expect("a triangle");
         let mut scene = demo.clone();
         let connected = scene.connected_triangles(first + 2);
-        assert_eq!(scene.join(connected), Some(first));
+        assert_eq!(scene.join(&connected), Some(first));
         assert_eq!(scene.objects.len(), demo.objects.len() - 5);
         assert_eq!(check(&scene), Ok(()));
         assert_eq!(scene.objects[first].name, demo.objects[first].name);
@@ -290,7 +277,7 @@ mod tests {
             animation = animation.with_value(target, time, Value::Point(point));
         }
         scene.animation = Arc::new(animation);
-        assert_eq!(scene.join(vec![2, 3]), Some(2));
+        assert_eq!(scene.join(&[2, 3]), Some(2));
         assert_eq!(check(&scene), Ok(()));
         let tracks = &scene.animation.tracks;
         assert_eq!(tracks.len(), 1);
@@ -310,15 +297,15 @@ mod tests {
     #[test]
     fn meshes_and_triangles_become_one_mesh_where_they_are() {
         let mut scene = Scene::demo();
-        assert_eq!(scene.join(vec![0, 2]), None, "a sphere");
-        assert_eq!(scene.join(vec![2, 3, 4]), Some(2));
+        assert_eq!(scene.join(&[0, 2]), None, "a sphere");
+        assert_eq!(scene.join(&[2, 3, 4]), Some(2));
         let Shape::Mesh(mesh) = &mut scene.objects[2].shape else {
             panic!("a mesh");
         };
         let joined = mesh.clone();
         (mesh.rotation, mesh.scale) = (DVec3::new(10.0, 20.0, 30.0), DVec3::new(-1.0, 2.0, 1.0));
         let (low, high) = scene.objects[2].shape.bounds().expect("it ends");
-        assert_eq!(scene.join(vec![2, 3]), Some(2));
+        assert_eq!(scene.join(&[2, 3]), Some(2));
         assert_eq!((scene.faces(), check(&scene)), (4, Ok(())));
         // The bounds of a turned mesh enclose its turned local box. The joined mesh is not turned, so its bounds
         // are within those of its parts.
@@ -335,6 +322,6 @@ mod tests {
         };
         scene.objects.push(Object::new("Gone", "plane", mesh));
         let last = scene.objects.len() - 1;
-        assert_eq!(scene.join(vec![2, last]), None);
+        assert_eq!(scene.join(&[2, last]), None);
     }
 }

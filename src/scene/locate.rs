@@ -1,8 +1,6 @@
 //! Finding the position of a value in RON text. The parser's positions are lost once the scene is deserialized; for
 //! a problem found by a later check, the text is scanned again for the field concerned.
 
-use std::str::FromStr;
-
 /// One step of a path from a value to one of its parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathStep {
@@ -17,8 +15,7 @@ pub enum PathStep {
 /// Returns the byte offset of the value at `path`, or of the last existing value along it: a missing field is
 /// reported at the position of its struct.
 pub fn locate(text: &str, path: &[PathStep]) -> usize {
-    let mut cursor = Cursor { text, at: 0 };
-    cursor.skip_preamble();
+    let mut cursor = Cursor::at_value(text);
     for step in path {
         let here = cursor.at;
         if !cursor.enter(step) {
@@ -31,20 +28,17 @@ pub fn locate(text: &str, path: &[PathStep]) -> usize {
 /// Returns the `version` that the text states, if it has the form of a scene. It is read first, so that a file of a
 /// newer version is refused for its version and not for unknown fields.
 pub fn claimed_version(text: &str) -> Option<u32> {
-    let mut cursor = Cursor { text, at: 0 };
-    cursor.skip_preamble();
-    let has_version = cursor.enter(&PathStep::Field("version"));
-    let digits = text[cursor.at..]
-        .split(|c: char| !c.is_ascii_digit())
-        .next()?;
-    u32::from_str(digits).ok().filter(|_| has_version)
+    let mut cursor = Cursor::at_value(text);
+    if !cursor.enter(&PathStep::Field("version")) {
+        return None;
+    }
+    let digits = cursor.rest().split(|c: char| !c.is_ascii_digit()).next()?;
+    digits.parse().ok()
 }
 
 /// Returns whether the top-level value of the text has a field of this name.
 pub fn names_field(text: &str, name: &'static str) -> bool {
-    let mut cursor = Cursor { text, at: 0 };
-    cursor.skip_preamble();
-    cursor.enter(&PathStep::Field(name))
+    Cursor::at_value(text).enter(&PathStep::Field(name))
 }
 
 /// Returns the comments and blank lines before the first value.
@@ -75,6 +69,18 @@ struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
+    /// The first value of a text, behind comments and `#![enable(…)]` attributes.
+    fn at_value(text: &'a str) -> Self {
+        let mut cursor = Self { text, at: 0 };
+        cursor.skip_space();
+        while cursor.rest().starts_with("#!") {
+            let end = cursor.rest().find(']');
+            cursor.at = end.map_or(text.len(), |end| cursor.at + end + 1);
+            cursor.skip_space();
+        }
+        cursor
+    }
+
     fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
@@ -114,18 +120,6 @@ impl<'a> Cursor<'a> {
             } else {
                 self.at += next.len_utf8();
             }
-        }
-    }
-
-    /// Skips comments and `#![enable(…)]` attributes before the value.
-    fn skip_preamble(&mut self) {
-        self.skip_space();
-        while self.rest().starts_with("#!") {
-            self.at += self
-                .rest()
-                .find(']')
-                .map_or(self.rest().len(), |end| end + 1);
-            self.skip_space();
         }
     }
 

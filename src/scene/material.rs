@@ -35,6 +35,15 @@ pub struct ColorPack {
 }
 
 impl ColorPack {
+    /// Creates a pack of one colour, with white highlights.
+    pub fn of_color(color: DVec3) -> Self {
+        Self {
+            ambient: color,
+            diffuse: color,
+            ..Self::default()
+        }
+    }
+
     /// Returns a key that is equal for equal color packs.
     pub fn key(&self) -> ([u64; 10], bool) {
         let Self {

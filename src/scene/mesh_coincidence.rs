@@ -55,17 +55,20 @@ pub enum Overlap {
 /// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let visible = objects.iter().enumerate();
-    let mut bounded: Vec<BoxedSurface> = visible
-        .filter(|(_, object)| object.visible)
-        .filter_map(|(index, object)| BoxedSurface::of(index, object))
-        .collect();
-    let endless: Vec<_> = bounded.extract_if(.., |one| one.bounds.is_none()).collect();
+    let visible = visible.filter(|(_, object)| object.visible);
+    let planes = visible.clone().filter_map(|(index, object)| {
+        let plane = object.shape.plane_piece()?;
+        (plane.outline == Outline::Endless).then_some((index, plane))
+    });
+    let planes: Vec<(usize, PlanePiece)> = planes.collect();
+    let bounded = visible.filter_map(|(index, object)| BoxedSurface::of(index, object));
+    let mut bounded: Vec<BoxedSurface> = bounded.collect();
     bounded.sort_by(|one, other| one.start().total_cmp(&other.start()));
     let mut found = Vec::new();
-    let mut add = |one: &BoxedSurface, other: &BoxedSurface, extent: Overlap| {
+    let mut add = |one: &BoxedSurface, other: usize, extent: Overlap| {
         found.push(Coincidence {
-            later: one.index.max(other.index),
-            earlier: one.index.min(other.index),
+            later: one.index.max(other),
+            earlier: one.index.min(other),
             extent,
         });
     };
@@ -74,11 +77,9 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         let Shape::Mesh(mesh) = one.shape else {
             continue;
         };
-        for plane in &endless {
-            if let Some(flat) = plane.shape.plane_piece()
-                && let Some(extent) = on_plane(mesh, &flat, (centre, &mut corners))
-            {
-                add(one, plane, extent);
+        for (index, plane) in &planes {
+            if let Some(extent) = on_plane(mesh, plane, (centre, &mut corners)) {
+                add(one, *index, extent);
             }
         }
     }
@@ -99,22 +100,22 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
         } else {
             &meshes[meshes_seen..]
         };
-        let end = one.bounds.map_or(0.0, |(_, high)| high.x);
+        let end = one.bounds.1.x;
         let near = others.iter().take_while(|other| other.start() <= end);
         for other in near.take_while(|_| try_spend(&mut boxes)) {
             if let Some(extent) = search.extent(one, other) {
-                add(one, other, extent);
+                add(one, other.index, extent);
             }
         }
     }
     found
 }
 
-/// A flat object or a mesh, and its slightly widened bounding box; `None` for an infinite plane.
+/// A bounded flat object or a mesh, and its slightly widened bounding box.
 struct BoxedSurface<'a> {
     index: usize,
     shape: &'a Shape,
-    bounds: Option<(DVec3, DVec3)>,
+    bounds: (DVec3, DVec3),
     /// Cached result of [`Self::normal_orientation`]: many objects may touch one.
     orientation: OnceCell<Option<f64>>,
 }
@@ -122,16 +123,12 @@ struct BoxedSurface<'a> {
 impl<'a> BoxedSurface<'a> {
     fn of(index: usize, object: &'a Object) -> Option<Self> {
         let shape = &object.shape;
-        let is_flat = || shape.plane_piece().is_some();
-        let bounds = match shape.bounds() {
-            None if matches!(shape, Shape::Plane(_)) => None,
-            Some(bounds) if matches!(shape, Shape::Mesh(_)) || is_flat() => Some(widened(bounds)),
-            _ => return None,
-        };
+        let is_surface = matches!(shape, Shape::Mesh(_)) || shape.plane_piece().is_some();
+        let bounds = shape.bounds().filter(|_| is_surface)?;
         Some(Self {
             index,
             shape,
-            bounds,
+            bounds: widened(bounds),
             orientation: OnceCell::new(),
         })
     }
@@ -163,14 +160,17 @@ impl<'a> BoxedSurface<'a> {
 
     /// Lower end of the bounding box along x.
     fn start(&self) -> f64 {
-        self.bounds.map_or(0.0, |(low, _)| low.x)
+        self.bounds.0.x
     }
 
     /// Returns the flat pieces that meet the box `within`, with their bounding boxes.
     fn pieces_in(&self, within: (DVec3, DVec3)) -> Vec<Boxed> {
         let Shape::Mesh(mesh) = self.shape else {
-            let piece = self.shape.plane_piece().zip(self.bounds);
-            return piece.into_iter().collect();
+            let piece = self.shape.plane_piece();
+            return piece
+                .map(|piece| (piece, self.bounds))
+                .into_iter()
+                .collect();
         };
         let boxed = |piece: PlanePiece| {
             let Outline::Triangle(corners) = piece.outline else {
@@ -268,7 +268,7 @@ type Boxed = (PlanePiece, (DVec3, DVec3));
 impl Search {
     /// Returns how two bounded objects share a plane; `None` if they do not, or if the budget does not suffice.
     fn extent(&mut self, one: &BoxedSurface, other: &BoxedSurface) -> Option<Overlap> {
-        let (around, other_around) = (one.bounds?, other.bounds?);
+        let (around, other_around) = (one.bounds, other.bounds);
         if !boxes_overlap(around, other_around) {
             return None;
         }

@@ -21,7 +21,6 @@ const FILE_PREFIX: &str = "unsaved-";
 #[derive(Debug)]
 pub struct Recovery {
     path: PathBuf,
-    lock_path: PathBuf,
     /// Held until the process ends, in whatever way.
     _lock: File,
 }
@@ -47,17 +46,10 @@ impl Recovery {
         let mut number = std::process::id();
         loop {
             let path = folder.join(format!("{FILE_PREFIX}{number}.ron"));
-            let lock_path = path.with_extension("lock");
-            let lock = File::create(&lock_path)?;
+            let lock = File::create(lock_path_of(&path))?;
             match lock.try_lock() {
                 // A leftover file with this number must not be overwritten.
-                Ok(()) if !path.exists() => {
-                    return Ok(Self {
-                        path,
-                        lock_path,
-                        _lock: lock,
-                    });
-                }
+                Ok(()) if !path.exists() => return Ok(Self { path, _lock: lock }),
                 Ok(()) | Err(TryLockError::WouldBlock) => number = number.wrapping_add(1),
                 Err(TryLockError::Error(error)) => return Err(error),
             }
@@ -111,12 +103,17 @@ impl Recovery {
 
 impl Drop for Recovery {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.lock_path);
+        let _ = fs::remove_file(lock_path_of(&self.path));
     }
 }
 
+/// The lock of a recovery file.
+fn lock_path_of(path: &Path) -> PathBuf {
+    path.with_extension("lock")
+}
+
 fn take_over(path: &Path, wanted: Option<&Path>, target: &Path) -> Option<Leftover> {
-    let lock_path = path.with_extension("lock");
+    let lock_path = lock_path_of(path);
     let lock = File::create(&lock_path).ok()?;
     lock.try_lock().ok()?;
     let text = fs::read_to_string(path).ok()?;

@@ -11,58 +11,6 @@ impl Target {
     pub fn get(&self, scene: &Scene) -> Option<Value> {
         Owners::of(scene, [self]).get(scene, self)
     }
-
-    /// Returns the value in `scene`, given the index of the target's owner.
-    fn get_at(&self, scene: &Scene, index: Option<usize>) -> Option<Value> {
-        let light = || scene.lights.get(index?);
-        let shape = || Some(&scene.objects.get(index?)?.shape);
-        Some(match self {
-            Self::AmbientIntensity => Value::Number(scene.ambient_intensity),
-            Self::LightIntensity(_) => Value::Number(light()?.intensity),
-            Self::LightPosition(_) => Value::Point(light()?.position),
-            Self::ObjectPosition(_) => Value::Point(shape()?.position()),
-            Self::ObjectRotation(_) => match shape()? {
-                Shape::Mesh(mesh) => Value::Point(mesh.rotation),
-                _ => return None,
-            },
-        })
-    }
-
-    fn set_at(&self, scene: &mut Scene, index: Option<usize>, value: Value) {
-        let Some(index) = index else {
-            if let (Self::AmbientIntensity, Value::Number(number)) = (self, value) {
-                scene.ambient_intensity = number;
-            }
-            return;
-        };
-        match (self, value) {
-            (Self::LightIntensity(_), Value::Number(number)) => {
-                if let Some(light) = scene.lights.get_mut(index) {
-                    light.intensity = number;
-                }
-            }
-            (Self::LightPosition(_), Value::Point(point)) => {
-                if let Some(light) = scene.lights.get_mut(index) {
-                    light.position = point;
-                }
-            }
-            (Self::ObjectPosition(_), Value::Point(point)) => {
-                match scene.objects.get_mut(index).map(|object| &mut object.shape) {
-                    None => {}
-                    // Its faces are not rebuilt.
-                    Some(Shape::Mesh(mesh)) => mesh.position = point,
-                    Some(shape) => *shape = shape.placed(point),
-                }
-            }
-            (Self::ObjectRotation(_), Value::Point(rotation)) => {
-                let object = scene.objects.get_mut(index);
-                if let Some(Shape::Mesh(mesh)) = object.map(|object| &mut object.shape) {
-                    mesh.rotation = rotation;
-                }
-            }
-            _ => {}
-        }
-    }
 }
 
 /// Indices of the lights and objects that a set of targets refers to, found in one pass over the scene.
@@ -100,13 +48,48 @@ impl<'a> Owners<'a> {
 
     /// Like [`Target::get`], for one of the targets that the owners were found for.
     pub fn get(&self, scene: &Scene, target: &Target) -> Option<Value> {
-        target.get_at(scene, self.index(target))
+        let index = self.index(target);
+        let light = || scene.lights.get(index?);
+        let shape = || Some(&scene.objects.get(index?)?.shape);
+        Some(match target {
+            Target::AmbientIntensity => Value::Number(scene.ambient_intensity),
+            Target::LightIntensity(_) => Value::Number(light()?.intensity),
+            Target::LightPosition(_) => Value::Point(light()?.position),
+            Target::ObjectPosition(_) => Value::Point(shape()?.position()),
+            Target::ObjectRotation(_) => match shape()? {
+                Shape::Mesh(mesh) => Value::Point(mesh.rotation),
+                _ => return None,
+            },
+        })
     }
 
     /// Writes the value of one of the targets to the scene. A value of the wrong type, or for a missing owner,
     /// changes nothing.
     pub fn set(&self, scene: &mut Scene, target: &Target, value: Value) {
-        target.set_at(scene, self.index(target), value);
+        match (target, self.index(target), value) {
+            (Target::AmbientIntensity, _, Value::Number(number)) => {
+                scene.ambient_intensity = number;
+            }
+            (Target::LightIntensity(_), Some(index), Value::Number(number)) => {
+                scene.lights[index].intensity = number;
+            }
+            (Target::LightPosition(_), Some(index), Value::Point(point)) => {
+                scene.lights[index].position = point;
+            }
+            (Target::ObjectPosition(_), Some(index), Value::Point(point)) => {
+                match &mut scene.objects[index].shape {
+                    // Its faces are not rebuilt.
+                    Shape::Mesh(mesh) => mesh.position = point,
+                    shape => *shape = shape.placed(point),
+                }
+            }
+            (Target::ObjectRotation(_), Some(index), Value::Point(rotation)) => {
+                if let Shape::Mesh(mesh) = &mut scene.objects[index].shape {
+                    mesh.rotation = rotation;
+                }
+            }
+            _ => {}
+        }
     }
 }
 

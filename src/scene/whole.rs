@@ -1,6 +1,5 @@
 //! The scene itself.
 
-use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -189,7 +188,7 @@ impl Scene {
     /// there.
     #[must_use]
     pub fn reloaded_from(&self, folder: &Path) -> Self {
-        let files = RefCell::new(MeshFiles::new());
+        let mut files = MeshFiles::new();
         self.with_sources(|source| {
             source.problem()?;
             let own_folder = source.reference().map(|(own_folder, _)| own_folder);
@@ -197,7 +196,7 @@ impl Scene {
                 return None;
             }
             let mut new = source.clone();
-            new.load(Some(folder), &mut files.borrow_mut());
+            new.load(Some(folder), &mut files);
             Some(new)
         })
     }
@@ -307,7 +306,7 @@ impl Scene {
 
     /// Returns the scene with each mesh source replaced for which `change` returns another one. Everything else
     /// stays shared.
-    fn with_sources(&self, change: impl Fn(&MeshSource) -> Option<MeshSource>) -> Self {
+    fn with_sources(&self, mut change: impl FnMut(&MeshSource) -> Option<MeshSource>) -> Self {
         let mut scene = self.clone();
         scene.change_meshes(|mesh| {
             let source = change(&mesh.source)?;
@@ -325,10 +324,8 @@ impl Scene {
             let Shape::Mesh(mesh) = &self.objects[index].shape else {
                 continue;
             };
-            if let Some(new) = change(mesh)
-                && let Some(object) = self.objects.get_mut(index)
-            {
-                object.shape = new.into();
+            if let Some(new) = change(mesh) {
+                self.objects[index].shape = new.into();
             }
         }
     }
@@ -395,20 +392,11 @@ pub fn default_ambient_intensity() -> f64 {
 
 /// Default color pack of light markers.
 pub fn light_pack() -> ColorPack {
-    let yellow = DVec3::new(255.0, 255.0, 0.0);
-    ColorPack {
-        ambient: yellow,
-        diffuse: yellow,
-        ..ColorPack::default()
-    }
+    ColorPack::of_color(DVec3::new(255.0, 255.0, 0.0))
 }
 
 fn default_packs() -> Packs {
-    let matte = |x, y, z| ColorPack {
-        ambient: DVec3::new(x, y, z),
-        diffuse: DVec3::new(x, y, z),
-        ..ColorPack::default()
-    };
+    let matte = |x, y, z| ColorPack::of_color(DVec3::new(x, y, z));
     Packs::from(IndexMap::from([
         ("sphere 1".to_owned(), matte(255.0, 128.0, 255.0)),
         ("sphere 2".to_owned(), matte(255.0, 128.0, 128.0)),

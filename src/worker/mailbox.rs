@@ -12,6 +12,8 @@ use crate::export::Exporting;
 use crate::lab::Study;
 use crate::trace::RenderControl;
 
+type QuestionSort = Discriminant<Question>;
+
 /// A job.
 #[derive(Debug)]
 pub enum Job {
@@ -48,20 +50,32 @@ impl Job {
     /// Whether `newer` makes this job pointless.
     fn is_replaced_by(&self, newer: &Self) -> bool {
         match (self, newer) {
-            (Self::Query(old), Self::Query(new)) => {
-                discriminant(&old.question) == discriminant(&new.question)
-            }
             (Self::Thumbnail(old), Self::Thumbnail(new)) => old.name == new.name,
-            // A still picture to look at is outdated once the scene has changed.
-            (Self::Still(old), Self::Live(new)) => {
-                old.save_to.is_none() && old.revision < new.revision
-            }
-            _ => self.kind() == newer.kind() && newer.kind().is_replaced(),
+            _ => newer.replaces(self.kind(), self.revision(), self.question()),
+        }
+    }
+
+    /// Whether it makes an older job pointless that has this kind, revision and sort of question.
+    fn replaces(&self, kind: JobKind, revision: u64, question: Option<QuestionSort>) -> bool {
+        // A still picture to look at is outdated once the scene has changed.
+        let is_outdated =
+            (kind, self.kind()) == (JobKind::Still, JobKind::Live) && revision < self.revision();
+        let is_same = kind == self.kind() && kind.is_replaced();
+        let is_asked_anew = question.is_some() && question == self.question();
+        is_outdated || is_same || is_asked_anew
+    }
+
+    /// Revision of the scene, for live and still pictures; 0 for others.
+    fn revision(&self) -> u64 {
+        match self {
+            Self::Live(live) => live.revision,
+            Self::Still(still) => still.revision,
+            _ => 0,
         }
     }
 
     /// The sort of question it asks, if it is a question.
-    fn question(&self) -> Option<Discriminant<Question>> {
+    fn question(&self) -> Option<QuestionSort> {
         match self {
             Self::Query(query) => Some(discriminant(&query.question)),
             _ => None,
@@ -90,7 +104,7 @@ pub struct Running {
     /// Id of the export, if it is one.
     pub export: Option<u64>,
     /// The sort of question, if it is one.
-    question: Option<Discriminant<Question>>,
+    question: Option<QuestionSort>,
     /// Stops it.
     pub control: Arc<RenderControl>,
     /// When it was started.
@@ -101,18 +115,13 @@ pub struct Running {
 
 impl Running {
     fn new(job: &Job, control: &Arc<RenderControl>) -> Self {
-        let (revision, pixels, save_to) = match job {
-            Job::Live(live) => (live.revision, 0, None),
-            Job::Still(still) => (
-                still.revision,
-                still.request.pixels(),
-                still.save_to.clone(),
-            ),
-            _ => (0, 0, None),
+        let (pixels, save_to) = match job {
+            Job::Still(still) => (still.request.pixels(), still.save_to.clone()),
+            _ => (0, None),
         };
         Self {
             kind: job.kind(),
-            revision,
+            revision: job.revision(),
             pixels,
             save_to,
             export: job.export(),
@@ -154,12 +163,7 @@ impl Mailbox {
     pub fn put(&mut self, job: Job) {
         self.waiting.retain(|old| !old.is_replaced_by(&job));
         for running in self.running.iter_mut().flatten() {
-            let is_outdated = running.kind == JobKind::Still
-                && matches!(&job, Job::Live(live) if running.revision < live.revision);
-            let is_same = running.kind == job.kind() && job.kind().is_replaced();
-            let is_asked_anew = running.question.is_some() && running.question == job.question();
-            let is_replaced = is_same || is_asked_anew;
-            if is_outdated || is_replaced {
+            if job.replaces(running.kind, running.revision, running.question) {
                 running.give_up();
             } else if job.kind().preempts(running.kind) {
                 running.control.stop();

@@ -59,15 +59,13 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             threads.run(|| run_job(shared, &mut job, &mut kept, &control))
         }));
-        let panic = match outcome {
+        match outcome {
             Ok(outcome) => {
-                let is_study = matches!(job, Job::Lab(_));
-                let has_more = finish(shared, job, Some(outcome));
+                let is_study_going_on = finish(shared, job, Some(outcome));
                 // Waking the window to redraw would disturb the time measurements.
-                if is_study && has_more && last_wake.elapsed() < REPORT_INTERVAL {
+                if is_study_going_on && last_wake.elapsed() < REPORT_INTERVAL {
                     continue;
                 }
-                None
             }
             Err(panic) => {
                 match &job {
@@ -79,18 +77,15 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
                     _ => {}
                 }
                 finish(shared, job, None);
-                Some(panic)
+                shared.report(Event::Fault(format!(
+                    "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
+                    panic_text(panic.as_ref())
+                )));
             }
-        };
+        }
         last_wake = Instant::now();
         // The other crew may be waiting until this one is idle.
         shared.wakeup.notify_all();
-        if let Some(panic) = panic {
-            shared.report(Event::Fault(format!(
-                "The tracer stopped because of an internal error: {}. Your scene is unchanged; edit it or undo the last step to continue.",
-                panic_text(panic.as_ref())
-            )));
-        }
         (shared.wake)();
     }
 }
@@ -153,8 +148,8 @@ fn next_job(shared: &Shared, crew: Crew) -> Option<(Job, Arc<RenderControl>)> {
     }
 }
 
-/// Reports how a job ended; the outcome `None` is a fault of the tracer. Returns whether the job is still wanted and
-/// has more to do.
+/// Reports how a job ended; the outcome `None` is a fault of the tracer. Returns whether the job is a study that is
+/// still wanted and has more to do.
 fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
     match (job, outcome) {
         (Job::Export(id, exporting), outcome) => {
@@ -163,28 +158,23 @@ fn finish(shared: &Shared, job: Job, outcome: Option<JobOutcome>) -> bool {
                 _ => None,
             };
             finish_frame(shared, id, exporting, step);
-            true
         }
-        (Job::Lab(study), Some(outcome)) => finish_study_step(shared, study, &outcome),
+        (Job::Lab(study), Some(outcome)) => return finish_study_step(shared, study, &outcome),
         (job, Some(JobOutcome::Unfinished)) => {
             let running = shared.mailbox().finish(job.kind().crew(), Some(job));
             let given_up = running.filter(|running| running.is_given_up);
             if let Some(path) = given_up.and_then(|running| running.save_to) {
                 shared.report_unwritten(&path);
             }
-            true
         }
-        (job, _) => {
-            shared.mailbox().finish(job.kind().crew(), None);
-            false
-        }
+        (job, _) => drop(shared.mailbox().finish(job.kind().crew(), None)),
     }
+    false
 }
 
 /// Puts an export back into the queue for its next frame, or notes how it ended. An export that is no longer wanted
 /// is dropped.
 fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: Option<ExportStep>) {
-    let is_going = matches!(step, Some(ExportStep::Going | ExportStep::Stopped));
     let ended = match step {
         Some(ExportStep::Going | ExportStep::Stopped) => None,
         Some(ExportStep::Done) => Some(exporting.finish().map(|_| ()).map_err(|e| e.to_string())),
@@ -198,7 +188,7 @@ fn finish_frame(shared: &Shared, id: u64, mut exporting: Box<Exporting>, step: O
     let mut outbox = shared.outbox();
     let state = outbox.exports.iter_mut().find(|state| state.id == id);
     let job = Job::Export(id, exporting);
-    let stopped = Some(job).filter(|_| is_going && state.is_some());
+    let stopped = Some(job).filter(|_| ended.is_none() && state.is_some());
     let running = mailbox.finish(Crew::Patient, stopped);
     let spent = running.map_or(Duration::ZERO, |running| running.spent());
     if let Some(state) = state {

@@ -95,15 +95,15 @@ fn check_track(at: &At, current: Value, track: &Track) -> Check {
         return at.refuse("a track needs at least one key".to_owned());
     }
     check_keys(&at, &track.keys)?;
+    let what = match track.target {
+        Target::AmbientIntensity | Target::LightIntensity(_) => "an intensity",
+        Target::ObjectPosition(_) | Target::LightPosition(_) => "a position",
+        Target::ObjectRotation(_) => "a rotation",
+    };
     for (index, key) in track.keys.iter().enumerate() {
         let key_at = at.index(index);
         let is_orbit = matches!(key.interpolation, Interpolation::Orbit { .. });
-        let what = match track.target {
-            Target::ObjectRotation(_) => Some("a rotation"),
-            Target::AmbientIntensity | Target::LightIntensity(_) => Some("an intensity"),
-            Target::ObjectPosition(_) | Target::LightPosition(_) => None,
-        };
-        if let Some(what) = what.filter(|_| is_orbit) {
+        if is_orbit && !track.target.is_position() {
             let at = key_at.field("interpolation");
             return at.refuse(format!("{what} cannot orbit a point: use Smooth or Linear"));
         }
@@ -112,13 +112,9 @@ fn check_track(at: &At, current: Value, track: &Track) -> Check {
             (Value::Number(number), Value::Number(_)) => at.within(number, 0.0..=1.0)?,
             (Value::Point(point), Value::Point(_)) => at.point(point)?,
             (_, Value::Number(_)) => {
-                return at.refuse("an intensity must be one number, 0–1".to_owned());
+                return at.refuse(format!("{what} must be one number, 0–1"));
             }
             (_, Value::Point(_)) => {
-                let what = match track.target {
-                    Target::ObjectRotation(_) => "a rotation",
-                    _ => "a position",
-                };
                 return at.refuse(format!("{what} must be three numbers such as (1, 2, 3)"));
             }
         }

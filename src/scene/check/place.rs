@@ -31,16 +31,8 @@ pub type Check = Result<(), Problem>;
 /// fails.
 pub struct At<'a> {
     parent: Option<&'a Self>,
-    step: Step<'a>,
-}
-
-/// One step of a path.
-#[derive(Clone, Copy)]
-enum Step<'a> {
-    Root,
-    Field(&'static str),
-    Index(usize),
-    Key(&'a str),
+    /// The step from the parent to here; `None` at the root.
+    step: Option<PathStep>,
 }
 
 impl<'a> At<'a> {
@@ -48,49 +40,44 @@ impl<'a> At<'a> {
     pub fn root() -> Self {
         Self {
             parent: None,
-            step: Step::Root,
+            step: None,
         }
     }
 
-    fn child(&'a self, step: Step<'a>) -> Self {
+    fn child(&'a self, step: PathStep) -> Self {
         Self {
             parent: Some(self),
-            step,
+            step: Some(step),
         }
     }
 
     /// A field of this value.
     pub fn field(&'a self, name: &'static str) -> Self {
-        self.child(Step::Field(name))
+        self.child(PathStep::Field(name))
     }
 
     /// An item of this list, counted from 0.
     pub fn index(&'a self, index: usize) -> Self {
-        self.child(Step::Index(index))
+        self.child(PathStep::Index(index))
     }
 
     /// The value of a key of this map.
-    pub fn key(&'a self, key: &'a str) -> Self {
-        self.child(Step::Key(key))
+    pub fn key(&'a self, key: &str) -> Self {
+        self.child(PathStep::Key(key.to_owned()))
     }
 
     fn name(&self) -> String {
-        match self.step {
-            Step::Root => "the scene".to_owned(),
-            Step::Field(name) => name.to_owned(),
-            Step::Index(index) => format!("item {}", index + 1),
-            Step::Key(key) => format!("{key:?}"),
+        match &self.step {
+            None => "the scene".to_owned(),
+            Some(PathStep::Field(name)) => (*name).to_owned(),
+            Some(PathStep::Index(index)) => format!("item {}", index + 1),
+            Some(PathStep::Key(key)) => format!("{key:?}"),
         }
     }
 
     fn path(&self) -> Vec<PathStep> {
         let mut path = self.parent.map_or(Vec::new(), At::path);
-        path.extend(match self.step {
-            Step::Root => None,
-            Step::Field(name) => Some(PathStep::Field(name)),
-            Step::Index(index) => Some(PathStep::Index(index)),
-            Step::Key(key) => Some(PathStep::Key(key.to_owned())),
-        });
+        path.extend(self.step.clone());
         path
     }
 

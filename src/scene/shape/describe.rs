@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use glam::{DQuat, DVec3};
 
+use super::angles::{angles_of, orientation_of};
 use super::plane_piece::PlanePiece;
 
 /// The common interface of all kinds of shapes.
@@ -32,15 +33,43 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
 
     /// Returns the shape moved by a vector.
     #[must_use]
-    fn moved(&self, by: DVec3) -> Self;
+    fn moved(&self, by: DVec3) -> Self {
+        let mut moved = self.clone();
+        moved.fields(&mut |field| {
+            if let PropertyValue::Point(point) = field.value {
+                *point += by;
+            }
+        });
+        moved
+    }
 
     /// Returns the shape turned about a point.
     #[must_use]
-    fn turned(&self, about: DVec3, by: DQuat) -> Self;
+    fn turned(&self, about: DVec3, by: DQuat) -> Self {
+        let mut turned = self.clone();
+        turned.fields(&mut |field| match field.value {
+            PropertyValue::Point(point) => *point = about + by * (*point - about),
+            PropertyValue::Direction(direction) => *direction = by * *direction,
+            PropertyValue::Angles(angles) => {
+                *angles = angles_of(by * orientation_of(*angles), *angles);
+            }
+            PropertyValue::Length(_) | PropertyValue::Angle(_) | PropertyValue::Factors(_) => {}
+        });
+        turned
+    }
 
     /// Returns the shape scaled about a point by a factor > 0.
     #[must_use]
-    fn scaled(&self, about: DVec3, by: f64) -> Self;
+    fn scaled(&self, about: DVec3, by: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.fields(&mut |field| match field.value {
+            PropertyValue::Point(point) => *point = about + (*point - about) * by,
+            PropertyValue::Length(length) => *length *= by,
+            PropertyValue::Factors(factors) => *factors *= by,
+            PropertyValue::Direction(_) | PropertyValue::Angles(_) | PropertyValue::Angle(_) => {}
+        });
+        scaled
+    }
 
     /// Returns a point of the shape and its smallest dimension, in world units; `None` for unbounded shapes.
     fn feature(&self) -> Option<(DVec3, f64)>;
@@ -57,16 +86,6 @@ pub trait Describe: Clone + Debug + PartialEq + Sized {
     }
 }
 
-/// Rotates a point about another one.
-pub fn turned(point: DVec3, about: DVec3, by: DQuat) -> DVec3 {
-    about + by * (point - about)
-}
-
-/// Scales the offset of a point from another one.
-pub fn scaled(point: DVec3, about: DVec3, by: f64) -> DVec3 {
-    about + (point - about) * by
-}
-
 /// A property of a shape.
 #[derive(Debug)]
 pub struct Property<'a> {
@@ -78,7 +97,7 @@ pub struct Property<'a> {
     pub value: PropertyValue<'a>,
 }
 
-/// A mutable reference to the value of a property, by type.
+/// A mutable reference to the value of a property, by type: this says how it is moved, turned and scaled.
 #[derive(Debug)]
 pub enum PropertyValue<'a> {
     /// A position in world units.
@@ -93,4 +112,21 @@ pub enum PropertyValue<'a> {
     Angle(&'a mut f64),
     /// Scale factors along x, y and z; none is 0.
     Factors(&'a mut DVec3),
+}
+
+impl PropertyValue<'_> {
+    /// Calls `visit` with the vector. A single number fills all three coordinates, and then takes on the first.
+    pub fn with_vector(&mut self, visit: impl FnOnce(&mut DVec3)) {
+        match self {
+            Self::Point(vector)
+            | Self::Direction(vector)
+            | Self::Angles(vector)
+            | Self::Factors(vector) => visit(vector),
+            Self::Length(number) | Self::Angle(number) => {
+                let mut vector = DVec3::splat(**number);
+                visit(&mut vector);
+                **number = vector.x;
+            }
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! The disc: a bounded floor or mirror.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -62,29 +62,6 @@ impl Describe for Disc {
 
     fn position(&self) -> DVec3 {
         self.center
-    }
-
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            center: self.center + by,
-            ..*self
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            center: turned(self.center, about, by),
-            normal: by * self.normal,
-            ..*self
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            center: scaled(self.center, about, by),
-            radius: self.radius * by,
-            ..*self
-        }
     }
 
     fn feature(&self) -> Option<(DVec3, f64)> {

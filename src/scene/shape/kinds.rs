@@ -106,58 +106,10 @@ macro_rules! shapes {
                 match self { $(Self::$kind(shape) => shape.position()),* }
             }
 
-            /// The centre of the bounding box; for unbounded shapes, the position.
-            pub fn middle(&self) -> DVec3 {
-                match self.bounds() {
-                    Some((low, high)) => low * 0.5 + high * 0.5,
-                    None => self.position(),
-                }
-            }
-
-            /// The point about which the shape is turned and scaled: for a mesh its position, if that is within its
-            /// bounding box; in all other cases the middle.
-            pub fn pivot(&self) -> DVec3 {
-                let position = self.position();
-                let is_within = |(low, high): (DVec3, DVec3)| {
-                    position.cmpge(low).all() && position.cmple(high).all()
-                };
-                match self {
-                    Self::Mesh(_) if self.bounds().is_some_and(is_within) => position,
-                    _ => self.middle(),
-                }
-            }
-
             /// Returns the shape moved by a vector.
             #[must_use]
             pub fn moved(&self, by: DVec3) -> Self {
                 match self { $(Self::$kind(shape) => Self::$kind(shape.moved(by))),* }
-            }
-
-            /// Returns the values of the point properties, in file order.
-            pub fn points(&self) -> Vec<DVec3> {
-                let mut points = Vec::new();
-                self.clone().fields(&mut |field| {
-                    if let PropertyValue::Point(point) = field.value {
-                        points.push(*point);
-                    }
-                });
-                points
-            }
-
-            /// Returns the shape moved so that its position is `place`; exactly so for shapes with a single point.
-            #[must_use]
-            pub fn placed(&self, place: DVec3) -> Self {
-                let mut placed = self.moved(place - self.position());
-                let mut points = Vec::new();
-                placed.fields(&mut |field| {
-                    if let PropertyValue::Point(point) = field.value {
-                        points.push(point);
-                    }
-                });
-                if let [only] = &mut points[..] {
-                    **only = place;
-                }
-                placed
             }
 
             /// Returns the shape turned about a point.
@@ -186,12 +138,6 @@ macro_rules! shapes {
             pub fn plane_piece(&self) -> Option<PlanePiece> {
                 match self { $(Self::$kind(shape) => shape.plane_piece()),* }
             }
-
-            /// Returns a point and the normal of an infinite plane; `None` for all other shapes.
-            pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
-                let flat = self.plane_piece().filter(|flat| flat.outline == Outline::Endless)?;
-                Some((flat.point, flat.normal))
-            }
         }
     };
 }
@@ -202,6 +148,59 @@ shapes! {
     Triangle: "A flat triangle.",
     Disc: "A flat disc.",
     Mesh: "Many triangles."
+}
+
+impl Shape {
+    /// The centre of the bounding box; for unbounded shapes, the position.
+    pub fn middle(&self) -> DVec3 {
+        match self.bounds() {
+            Some((low, high)) => low * 0.5 + high * 0.5,
+            None => self.position(),
+        }
+    }
+
+    /// The point about which the shape is turned and scaled: for a mesh its position, if that is within its
+    /// bounding box; in all other cases the middle.
+    pub fn pivot(&self) -> DVec3 {
+        let position = self.position();
+        let is_within =
+            |(low, high): (DVec3, DVec3)| position.cmpge(low).all() && position.cmple(high).all();
+        match self {
+            Self::Mesh(_) if self.bounds().is_some_and(is_within) => position,
+            _ => self.middle(),
+        }
+    }
+
+    /// Returns the values of the point properties, in file order.
+    pub fn points(&self) -> Vec<DVec3> {
+        let mut points = Vec::new();
+        self.clone().fields(&mut |field| {
+            if let PropertyValue::Point(point) = field.value {
+                points.push(*point);
+            }
+        });
+        points
+    }
+
+    /// Returns the shape moved so that its position is `place`; exactly so for shapes with a single point.
+    #[must_use]
+    pub fn placed(&self, place: DVec3) -> Self {
+        let mut placed = self.moved(place - self.position());
+        if self.points().len() == 1 {
+            placed.fields(&mut |field| {
+                if let PropertyValue::Point(point) = field.value {
+                    *point = place;
+                }
+            });
+        }
+        placed
+    }
+
+    /// Returns a point and the normal of an infinite plane; `None` for all other shapes.
+    pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
+        let flat = self.plane_piece()?;
+        (flat.outline == Outline::Endless).then_some((flat.point, flat.normal))
+    }
 }
 
 #[cfg(test)]

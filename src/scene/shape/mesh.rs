@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{BVec3, DAffine3, DMat3, DQuat, DVec3};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::angles::{angles_of, orientation_of, turned_about};
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::angles::{orientation_of, turned_about};
+use super::describe::{Describe, Property, PropertyValue};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
 use crate::mesh::{MAX_ABS_COORDINATE, Triangles, icosphere};
@@ -52,8 +52,13 @@ struct SerializedMesh {
         skip_serializing_if = "notation::is_default"
     )]
     rotation: DVec3,
-    #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
-    scale: Scale,
+    #[serde(
+        default = "unscaled",
+        serialize_with = "serialize_scale",
+        deserialize_with = "notation::vector::one_or_three",
+        skip_serializing_if = "is_unscaled"
+    )]
+    scale: DVec3,
     #[serde(
         default,
         with = "notation::number",
@@ -67,32 +72,21 @@ struct SerializedMesh {
 #[serde(transparent)]
 struct Point(#[serde(with = "notation::vector")] DVec3);
 
-/// Scale factors, serialized as a single number if all three are equal.
-#[derive(Clone, Copy, PartialEq)]
-struct Scale(DVec3);
-
-fn unscaled() -> Scale {
-    Scale(DVec3::ONE)
+fn unscaled() -> DVec3 {
+    DVec3::ONE
 }
 
-fn is_unscaled(scale: &Scale) -> bool {
+fn is_unscaled(scale: &DVec3) -> bool {
     *scale == unscaled()
 }
 
-impl Serialize for Scale {
-    fn serialize<S: Serializer>(&self, file: S) -> Result<S::Ok, S::Error> {
-        let [x, y, z] = self.0.to_array();
-        if x == y && y == z {
-            notation::number::serialize(&x, file)
-        } else {
-            notation::vector::serialize(&self.0, file)
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Scale {
-    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
-        notation::vector::one_or_three(file).map(Self)
+/// Writes scale factors, as a single number if all three are equal.
+fn serialize_scale<S: Serializer>(scale: &DVec3, file: S) -> Result<S::Ok, S::Error> {
+    let [x, y, z] = scale.to_array();
+    if x == y && y == z {
+        notation::number::serialize(&x, file)
+    } else {
+        notation::vector::serialize(scale, file)
     }
 }
 
@@ -112,7 +106,7 @@ impl Serialize for Mesh {
             faces,
             position: self.position,
             rotation: self.rotation,
-            scale: Scale(self.scale),
+            scale: self.scale,
             smooth: self.smooth,
         };
         text.serialize(file)
@@ -139,7 +133,7 @@ impl<'de> Deserialize<'de> for Mesh {
             source,
             position: text.position,
             rotation: text.rotation,
-            scale: text.scale.0,
+            scale: text.scale,
             smooth: text.smooth,
         })
     }
@@ -192,16 +186,11 @@ impl Mesh {
     /// Replaces the triangles of the mesh file by the reason why they are refused, if they lie too far from the
     /// origin: the extent is known only once the file is read.
     pub fn refuse_if_too_far(&mut self) {
-        let too_far = self.problem();
-        if let MeshSource::File {
-            path,
-            triangles,
-            problem,
-            ..
-        } = &mut self.source
-            && let Some(sentence) = too_far
+        if let MeshSource::File { path, .. } = &self.source
+            && let Some(sentence) = self.problem()
         {
-            (*triangles, *problem) = (Arc::default(), Some(format!("{path}: {sentence}")));
+            let problem = format!("{path}: {sentence}");
+            self.source.set_read(Err(problem));
         }
     }
 
@@ -296,46 +285,15 @@ impl Describe for Mesh {
         let (low, high) = self.source.triangles().bounds()?;
         let transform = self.transform();
         let corners = (0..8).map(|corner| {
-            let part = |axis: usize| {
-                if corner >> axis & 1 == 0 {
-                    low[axis]
-                } else {
-                    high[axis]
-                }
-            };
-            transform.transform_point3(DVec3::new(part(0), part(1), part(2)))
+            let is_high = BVec3::from([0, 1, 2].map(|axis| corner >> axis & 1 == 1));
+            let corner = transform.transform_point3(DVec3::select(is_high, high, low));
+            (corner, corner)
         });
-        let first = corners.clone().next()?;
-        Some(corners.fold((first, first), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        }))
+        corners.reduce(|(low, high), (corner, _)| (low.min(corner), high.max(corner)))
     }
 
     fn position(&self) -> DVec3 {
         self.position
-    }
-
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            position: self.position + by,
-            ..self.clone()
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            position: turned(self.position, about, by),
-            rotation: angles_of(by * self.orientation(), self.rotation),
-            ..self.clone()
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            position: scaled(self.position, about, by),
-            scale: self.scale * by,
-            ..self.clone()
-        }
     }
 
     /// Describes the mesh as a whole: the size of single triangles does not matter, since their neighbours are
@@ -380,7 +338,7 @@ mod tests {
         let mut expected = mesh.transform().transform_point3(corner);
         for axis in [DVec3::X, DVec3::new(0.6, 0.0, -0.8)] {
             let by = DQuat::from_axis_angle(axis, 1.3);
-            expected = turned(expected, about, by);
+            expected = about + by * (expected - about);
             mesh = mesh.turned(about, by);
         }
         let found = mesh.transform().transform_point3(corner);

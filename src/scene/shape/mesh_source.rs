@@ -59,9 +59,8 @@ impl MeshSource {
         let Self::File {
             path,
             folder: own_folder,
-            triangles,
-            problem,
             marks,
+            ..
         } = self
         else {
             return;
@@ -81,16 +80,24 @@ impl MeshSource {
                 "{path} is not read: a mesh file must be in the folder of the scene, or below it"
             )),
             Some(folder) => {
-                let read = || match read_triangles(&folder.join(&path)) {
-                    Ok(triangles) => Ok(Arc::new(triangles)),
-                    Err(error) => Err(error.to_string()),
-                };
+                let read = || read_triangles(&folder.join(&path)).map(Arc::new);
+                let read = || read().map_err(|error| error.to_string());
                 files.entry(path.clone()).or_insert_with(read).clone()
             }
         };
-        match read {
-            Ok(new) => (*triangles, *problem) = (new, None),
-            Err(sentence) => (*triangles, *problem) = (Arc::default(), Some(sentence)),
+        self.set_read(read);
+    }
+
+    /// Stores the triangles of the file, or why it could not be read, if the source is a file.
+    pub fn set_read(&mut self, read: Result<Arc<Triangles>, String>) {
+        if let Self::File {
+            triangles, problem, ..
+        } = self
+        {
+            (*triangles, *problem) = match read {
+                Ok(new) => (new, None),
+                Err(sentence) => (Arc::default(), Some(sentence)),
+            };
         }
     }
 

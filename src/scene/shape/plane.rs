@@ -1,9 +1,9 @@
 //! The infinite plane.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -49,27 +49,6 @@ impl Describe for Plane {
 
     fn position(&self) -> DVec3 {
         self.point
-    }
-
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            point: self.point + by,
-            ..*self
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            point: turned(self.point, about, by),
-            normal: by * self.normal,
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            point: scaled(self.point, about, by),
-            ..*self
-        }
     }
 
     fn feature(&self) -> Option<(DVec3, f64)> {

@@ -1,9 +1,9 @@
 //! The sphere.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue};
 use crate::scene::notation;
 
 /// A sphere.
@@ -77,27 +77,6 @@ impl Describe for Sphere {
 
     fn position(&self) -> DVec3 {
         self.center
-    }
-
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            center: self.center + by,
-            ..*self
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            center: turned(self.center, about, by),
-            ..*self
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            center: scaled(self.center, about, by),
-            radius: self.radius * by,
-        }
     }
 
     fn feature(&self) -> Option<(DVec3, f64)> {

@@ -1,9 +1,9 @@
 //! The triangle.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::describe::{Describe, Property, PropertyValue, scaled, turned};
+use super::describe::{Describe, Property, PropertyValue};
 use super::plane_piece::{Outline, PlanePiece};
 use crate::scene::direction::unit;
 use crate::scene::notation;
@@ -86,30 +86,6 @@ impl Describe for Triangle {
 
     fn position(&self) -> DVec3 {
         self.a
-    }
-
-    fn moved(&self, by: DVec3) -> Self {
-        Self {
-            a: self.a + by,
-            b: self.b + by,
-            c: self.c + by,
-        }
-    }
-
-    fn turned(&self, about: DVec3, by: DQuat) -> Self {
-        Self {
-            a: turned(self.a, about, by),
-            b: turned(self.b, about, by),
-            c: turned(self.c, about, by),
-        }
-    }
-
-    fn scaled(&self, about: DVec3, by: f64) -> Self {
-        Self {
-            a: scaled(self.a, about, by),
-            b: scaled(self.b, about, by),
-            c: scaled(self.c, about, by),
-        }
     }
 
     fn feature(&self) -> Option<(DVec3, f64)> {

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::items::{BOTH_COLORS, COLOR_PACK};
 use crate::editor::{Edit, Item, ItemKind};
-use crate::scene::{ColorPack, Light, Object, PropertyValue, Scene, Shape};
+use crate::scene::{ColorPack, Light, Object, Property, Scene, Shape};
 use crate::ui::rows::{EditedPart, is_channel};
 
 /// A point of an item that an edit moves.
@@ -141,13 +141,10 @@ pub fn chosen_for_all(
             if field == COLOR_PACK {
                 object.color_pack.clear();
             }
-            object.shape.fields(&mut |property| match property.value {
-                _ if property.name != field => {}
-                PropertyValue::Point(value)
-                | PropertyValue::Direction(value)
-                | PropertyValue::Angles(value)
-                | PropertyValue::Factors(value) => clear(value),
-                PropertyValue::Length(value) | PropertyValue::Angle(value) => *value = f64::NAN,
+            object.shape.fields(&mut |mut property| {
+                if property.name == field {
+                    property.value.with_vector(clear);
+                }
             });
             scene.objects[*index] = object;
         }
@@ -280,41 +277,28 @@ fn with_changed_coordinates(current: DVec3, old: DVec3, new: DVec3) -> DVec3 {
 /// All properties of a shape with their names; a single number fills all three coordinates.
 pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
     let mut values = Vec::new();
-    shape.clone().fields(&mut |field| {
-        values.push((field.name, value_of(&field.value)));
+    shape.clone().fields(&mut |Property {
+                                   name, mut value, ..
+                               }| {
+        value.with_vector(|vector| values.push((name, *vector)));
     });
     values
-}
-
-fn value_of(value: &PropertyValue) -> DVec3 {
-    match value {
-        PropertyValue::Point(vector)
-        | PropertyValue::Direction(vector)
-        | PropertyValue::Angles(vector)
-        | PropertyValue::Factors(vector) => **vector,
-        PropertyValue::Length(number) | PropertyValue::Angle(number) => DVec3::splat(**number),
-    }
 }
 
 /// Applies to a shape the changes from `old` to `new` of the properties that it has, too.
 fn copy_shape_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
     let (old, new) = (values(old), values(new));
-    shape.fields(&mut |field| {
+    shape.fields(&mut |Property {
+                           name, mut value, ..
+                       }| {
         let find = |values: &[(&str, DVec3)]| {
-            let mut named = values.iter().filter(|(name, _)| *name == field.name);
-            named.next().map(|(_, value)| *value)
+            let mut values = values.iter();
+            values
+                .find(|(other, _)| *other == name)
+                .map(|(_, value)| *value)
         };
-        let (Some(old), Some(new)) = (find(&old), find(&new)) else {
-            return;
-        };
-        match field.value {
-            PropertyValue::Point(value)
-            | PropertyValue::Direction(value)
-            | PropertyValue::Angles(value)
-            | PropertyValue::Factors(value) => *value = with_changed_coordinates(*value, old, new),
-            PropertyValue::Length(value) | PropertyValue::Angle(value) => {
-                *value = with_changed_coordinates(DVec3::splat(*value), old, new).x;
-            }
+        if let Some((old, new)) = find(&old).zip(find(&new)) {
+            value.with_vector(|vector| *vector = with_changed_coordinates(*vector, old, new));
         }
     });
 }
