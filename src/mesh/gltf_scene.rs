@@ -16,6 +16,7 @@ use super::gltf_buffers::Buffers;
 use super::gltf_skin::Placement;
 use super::limits::{check_faces, check_groups, check_points};
 use super::part::{MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TRANSPARENT, Part, PartColors};
+use super::polygon::{fan, strip};
 use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes of memory.
@@ -368,21 +369,8 @@ impl Walk<'_> {
 
 fn triangles_of(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
-        Mode::TriangleStrip => {
-            let strip = corners.array_windows().enumerate();
-            let wound = |(number, &[a, b, c]): (usize, &[u32; 3])| match number % 2 {
-                0 => [a, b, c],
-                _ => [b, a, c],
-            };
-            strip.map(wound).collect()
-        }
-        Mode::TriangleFan => match corners {
-            [first, rest @ ..] => rest
-                .windows(2)
-                .map(|pair| [*first, pair[0], pair[1]])
-                .collect(),
-            [] => Vec::new(),
-        },
+        Mode::TriangleStrip => strip(corners).collect(),
+        Mode::TriangleFan => fan(corners).collect(),
         _ => corners.as_chunks().0.to_vec(),
     }
 }

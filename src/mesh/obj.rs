@@ -11,7 +11,7 @@ use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
 use super::part::{MeshFile, NOTE_POINT_COLORS, Part};
-use super::polygon::{mend_fan, note_of_uncut};
+use super::polygon::{fan, mend_fan, note_of_uncut};
 use super::text::text_of;
 use super::triangles::Triangles;
 
@@ -107,9 +107,7 @@ fn triangles_of(model: &Model, uncut: &mut usize) -> Result<Triangles, Fault> {
         let (polygon, rest) = corners.split_at(count as usize);
         corners = rest;
         let start = faces.len();
-        if let [first, others @ ..] = polygon {
-            faces.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
-        }
+        faces.extend(fan(polygon));
         let is_uncut = mend_fan(&mut faces[start..], |corner| point(corner as usize));
         *uncut += usize::from(is_uncut);
     }
