@@ -14,7 +14,7 @@ use gltf::{Document, Glb, Material, Node, Semantic};
 use super::error::Fault;
 use super::gltf_buffers::Buffers;
 use super::gltf_skin::Placement;
-use super::limits::{check_faces, check_groups, check_points};
+use super::limits::{check, check_faces, check_groups, check_points};
 use super::part::{MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TRANSPARENT, Part, PartColors};
 use super::polygon::{fan, strip};
 use super::triangles::Triangles;
@@ -156,10 +156,7 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
 /// Parses and validates the JSON; also returns whether the file has animations.
 fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     let objects = json.iter().filter(|&&byte| byte == b'{' || byte == b'[');
-    if objects.count() > MAX_OBJECTS {
-        let (what, limit) = ("objects and lists", MAX_OBJECTS);
-        return Err(Fault::TooMany { what, limit });
-    }
+    check("objects and lists", objects.count(), MAX_OBJECTS)?;
     let (mut root, has_animations) = root_of(json)?;
     root.animations.clear();
     // Required extensions for materials, lights or images do not prevent reading the triangles.
