@@ -134,12 +134,9 @@ pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
 /// # Errors
 /// [`MeshError`] with the file, the place in it and what is wrong.
 pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
-    let mut file = read_mesh_file(path)?;
-    match file.parts.as_mut_slice() {
-        [only] => Ok(std::mem::take(&mut only.triangles)),
-        several => Triangles::join(several.iter().map(|part| &part.triangles))
-            .map_err(|fault| fault.with_path(path)),
-    }
+    let parts = read_mesh_file(path)?.parts.into_iter();
+    let triangles = parts.map(|part| part.triangles).collect();
+    Triangles::join(triangles).map_err(|fault| fault.with_path(path))
 }
 
 #[cfg(test)]

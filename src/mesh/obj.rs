@@ -58,12 +58,9 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         };
         let material = material.and_then(|id| materials.get(id));
         let triangles = models.iter().map(|model| triangles_of(model, &mut uncut));
-        let triangles: Result<Vec<_>, _> = triangles.collect();
-        let triangles = triangles.and_then(|pieces| match <[_; 1]>::try_from(pieces) {
-            Ok([only]) => Ok(only),
-            Err(several) => Triangles::join(several.iter()),
-        });
         let triangles = triangles
+            .collect::<Result<Vec<_>, _>>()
+            .and_then(Triangles::join)
             .map_err(|_| find_fault(text, "a point has a coordinate that is out of range"))?;
         Ok(Part {
             name,
