@@ -164,16 +164,15 @@ impl Body<'_> {
         }
         for number in 1..=element.count {
             let read = match self.encoding {
-                Encoding::Ascii => self.next_line(number, element)?,
+                Encoding::Ascii => Ok(self.next_line(number, element)?),
                 Encoding::BinaryLittleEndian => self
                     .parser
-                    .read_little_endian_element(&mut self.rest, element)
-                    .map_err(|error| body_fault(&error, number, element))?,
-                Encoding::BinaryBigEndian => self
-                    .parser
-                    .read_big_endian_element(&mut self.rest, element)
-                    .map_err(|error| body_fault(&error, number, element))?,
+                    .read_little_endian_element(&mut self.rest, element),
+                Encoding::BinaryBigEndian => {
+                    self.parser.read_big_endian_element(&mut self.rest, element)
+                }
             };
+            let read = read.map_err(|error| body_fault(&error, number, element))?;
             on_element(number, read).map_err(|fault| match fault {
                 Fault::Refused { why, .. } if self.encoding == Encoding::Ascii => {
                     Fault::in_line(self.line - 1, why)
