@@ -212,24 +212,13 @@ fn nearest_triples(points: &[DVec3]) -> Vec<[u32; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
-
     use super::*;
 
     #[test]
     fn solids_are_closed_and_look_outwards() {
         for Solid { name, make, smooth } in SOLIDS {
             let solid = make(2.0);
-            let mut edges = HashSet::new();
-            for &[a, b, c] in solid.faces() {
-                for edge in [(a, b), (b, c), (c, a)] {
-                    assert!(edges.insert(edge), "{name}: an edge is passed twice");
-                }
-            }
-            assert!(
-                edges.iter().all(|&(a, b)| edges.contains(&(b, a))),
-                "{name} is open"
-            );
+            assert!(are_closed(solid.corners()), "{name} is open");
             let volume: f64 = solid
                 .corners()
                 .map(|[a, b, c]| a.dot(c.cross(b)) / 6.0)
@@ -250,6 +239,7 @@ mod tests {
                 }
             }
             for pair in faces_of.values() {
+    use crate::mesh::are_closed;
                 let angle = normals[pair[0]]
                     .angle_between(normals[pair[1]])
                     .to_degrees();
