@@ -44,7 +44,7 @@ use crate::files::{Marks, file_marks, has_ending};
 
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
-pub use solids::{SOLIDS, Solid, icosphere};
+pub use solids::{SOLIDS, Solid, globe, icosphere};
 pub use triangles::{MAX_ABS_COORDINATE, Triangles, are_closed, position_key};
 
 /// File format of a mesh.
