@@ -190,15 +190,7 @@ fn a_mesh_is_its_triangles() {
 
 #[test]
 fn where_a_mesh_is_costs_no_precision() {
-    let by = DVec3::new(3e6, -2e6, 5e6);
-    let mut moved = exhibition();
-    for object in moved.objects.iter_mut() {
-        object.shape = object.shape.moved(by);
-    }
-    for light in moved.lights.iter_mut() {
-        light.position += by;
-    }
-    moved.camera.position += by;
+    let moved = random::placed(exhibition(), 1.0, DVec3::new(3e6, -2e6, 5e6));
     let wanted = RenderRequest {
         precision: Precision::Single,
         ..RenderRequest::sized(320, 240)

@@ -74,6 +74,27 @@ pub fn published() -> [Scene; 2] {
 
 /// Triangles of arbitrary form over a floor that mirrors them and receives their shadows from two lights.
 pub fn shards() -> Scene {
+/// A scene as a whole, scaled about the origin and then moved.
+pub fn placed(mut scene: Scene, scale: f64, by: DVec3) -> Scene {
+    for object in scene.objects.iter_mut() {
+        object.shape = object.shape.scaled(DVec3::ZERO, scale).moved(by);
+    }
+    for light in scene.lights.iter_mut() {
+        light.position = light.position * scale + by;
+        if let Some(marker) = &mut light.marker {
+            marker.radius *= scale;
+        }
+    }
+    scene.camera.position = scene.camera.position * scale + by;
+    scene.camera.orthographic_height *= scale;
+    scene
+}
+
+/// The scene of the published flight.
+pub fn flight() -> Scene {
+    Document::load(FLIGHT.as_ref()).expect("a scene").scene
+}
+
     let mut scene = Scene::demo();
     scene.objects.retain(|object| object.name == "Plane");
     let dice = &mut Dice(3);
