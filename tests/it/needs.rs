@@ -2,14 +2,14 @@
 //! not apply where it must not.
 
 use glam::DVec3;
-use glint::image::{Image, render};
+use glint::image::Image;
 use glint::plan::{Model, Plan, PlanCache, RenderRequest, needs};
 use glint::scene::{
     Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
 };
-use glint::trace::{Rays, RenderControl};
+use glint::trace::Rays;
 
-use crate::pictures::picture;
+use crate::pictures::{differing, picture};
 use crate::random;
 
 fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
@@ -50,13 +50,7 @@ fn what_is_left_out_is_not_missed() {
     for (index, scene) in scenes.enumerate() {
         let (needed, few) = picture_of(&scene, Model::Needed);
         let (everything, many) = picture_of(&scene, Model::Everything);
-        let differ = needed
-            .pixels
-            .iter()
-            .zip(&everything.pixels)
-            .filter(|(a, b)| a != b)
-            .count();
-        assert_eq!(differ, 0, "scene {index}");
+        assert_eq!(differing(&needed, &everything, 0), 0, "scene {index}");
         assert!(
             few.shadow < many.shadow && few.reflected <= many.reflected,
             "{few:?} {many:?}"
@@ -93,9 +87,7 @@ fn what_is_culled_is_not_missed() {
                     sampling,
                     ..RenderRequest::sized(96, 72)
                 };
-                let traced = render(&scene, &request, &RenderControl::default());
-                let (image, cost) = traced.expect("not stopped");
-                (image, cost.rays)
+                picture(&scene, &request)
             };
             let (culled, unculled) = (traced(Model::Needed), traced(Model::Unculled));
             assert_eq!(culled.1, unculled.1, "rays of scene {index}, {sampling:?}");

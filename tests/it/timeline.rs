@@ -10,17 +10,16 @@ use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
 use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
-use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Animation, Document, Interpolation, Key as SceneKey, KeyId, Keys, Leftover, MAX_SECONDS, Owner,
     Projection, Scene, Target, Value,
 };
-use glint::trace::RenderControl;
 use glint::ui::Ask;
 use glint::worker::{ThumbnailJob, Worker};
 
 use crate::harness::{CTRL, EditorHarness, survey_flight};
+use crate::pictures::picture;
 use crate::program::FLIGHT;
 
 /// Unsaved work left by an ended program.
@@ -397,9 +396,7 @@ fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
     let there = shot(&scene, &CameraPath::new(&scene.animation.keys), 1.2);
     let size = harness.picture();
     let expected = RenderRequest::of(&there, size.width as u32, size.height as u32);
-    let direct = render(&there, &expected, &RenderControl::default())
-        .expect("whole")
-        .0;
+    let direct = picture(&there, &expected).0;
     assert!(harness.picture() == direct, "what is shown is the frame");
     assert_eq!(harness.editor().undo_label(), None, "looking is no edit");
     harness.press(Modifiers::NONE, Key::Period);
@@ -1106,9 +1103,7 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
         sampling: glint::scene::Sampling::Centres,
         ..RenderRequest::of(&scene, 40, 30)
     };
-    let direct = render(&scene, &plain, &RenderControl::default())
-        .expect("whole")
-        .0;
+    let direct = picture(&scene, &plain).0;
     assert!(pictures.iter().all(|(_, image)| *image == direct));
 }
 

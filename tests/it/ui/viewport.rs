@@ -3,13 +3,12 @@
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
-use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{Projection, Sampling, Scene};
-use glint::trace::RenderControl;
 
 use super::tools::{button, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
+use crate::pictures::picture;
 
 #[test]
 fn the_window_opens_on_the_demo_and_shows_its_picture() {
@@ -20,9 +19,7 @@ fn the_window_opens_on_the_demo_and_shows_its_picture() {
         sampling: Sampling::ADAPTIVE,
         ..RenderRequest::sized(shown.width as u32, shown.height as u32)
     };
-    let direct = render(harness.scene(), &smooth, &RenderControl::default())
-        .expect("not stopped")
-        .0;
+    let direct = picture(harness.scene(), &smooth).0;
     assert!(
         shown == direct,
         "the live view and a plain render are the same bytes"
@@ -79,12 +76,8 @@ fn keys_switch_projection_markers_and_resolution() {
 fn the_still_picture_stays_until_the_scene_changes() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::H);
-    let still = render(
-        harness.scene(),
-        &RenderRequest::still(harness.scene()),
-        &RenderControl::default(),
-    );
-    assert!(harness.picture() == still.expect("not stopped").0);
+    let still = RenderRequest::still(harness.scene());
+    assert!(harness.picture() == picture(harness.scene(), &still).0);
     harness.click("Sphere 2");
     assert_eq!(
         harness.editor().mode,
