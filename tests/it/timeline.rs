@@ -45,8 +45,7 @@ pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     };
     scene.animation_mut().keys = keys.iter().map(key).collect();
     scene.animation_mut().frames_per_second = 10.0;
-    let document = Document::of(scene);
-    EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
+    EditorHarness::on(scene)
 }
 
 /// Times of the camera keys in seconds, rounded to milliseconds.
@@ -206,25 +205,14 @@ fn keys_are_set_overwritten_and_deleted() {
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(times(&harness), [0.0]);
     // With one key the flight has no duration: a second key is added to the text.
-    let mut later = harness.scene().animation.clone();
-    Arc::make_mut(&mut later)
-        .keys
-        .push(SceneKey::new(2.0, harness.scene().camera.clone()));
-    let text = Document {
-        header: String::new(),
-        scene: Scene {
-            animation: later,
-            ..harness.scene().clone()
-        },
-    };
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
+    let mut scene = harness.scene().clone();
+    let later = SceneKey::new(2.0, scene.camera.clone());
+    scene.animation_mut().keys.push(later);
+    let mut harness = EditorHarness::on(scene);
     harness.press(Modifiers::NONE, Key::CloseBracket);
     assert_eq!(harness.editor().shown_time(), 2.0);
     // Flies away from the key, and overwrites it with the view.
-    harness.window.key_down(Key::D);
-    (0..30).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::D);
-    harness.settle();
+    harness.hold(Key::D, 30);
     assert!(!harness.editor().looks_through(), "flying leaves the shot");
     let view = harness.scene().camera.clone();
     assert_ne!(
@@ -597,15 +585,11 @@ fn a_length_that_only_a_file_can_have_is_left_in_silence() {
     let mut harness = animation(&[(0.0, 0.0), (0.05, 60.0)]);
     let before = harness.scene().clone();
     let field = "length of the flight";
-    let field = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, field);
-    field.click();
-    harness.settle();
+    harness.put_cursor_into(field);
     harness.press(Modifiers::NONE, Key::Enter);
     assert_eq!(harness.scene(), &before);
     let words = "length of the flight must be between";
-    assert!(harness.window.query_by_label_contains(words).is_none());
+    assert!(!harness.sees(words));
 }
 
 #[test]
@@ -674,10 +658,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
 fn a_key_is_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
     // From farther back, the flight is in view.
-    harness.window.key_down(Key::S);
-    (0..60).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::S);
-    harness.settle();
+    harness.hold(Key::S, 60);
     let before = harness.scene().animation.keys[1].value.clone();
     let at = place_of(&harness, "Key 2 in the view");
     drag(&mut harness, at, vec2(0.0, -60.0), Modifiers::NONE);
@@ -721,10 +702,7 @@ fn undo_of_a_movement_out_of_the_shot_looks_through_it_again() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
     harness.press(Modifiers::NONE, Key::C);
     assert!(harness.editor().looks_through());
-    harness.window.key_down(Key::W);
-    (0..20).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::W);
-    harness.settle();
+    harness.hold(Key::W, 20);
     assert!(!harness.editor().looks_through());
     harness.press(Modifiers::COMMAND, Key::Z);
     assert!(harness.editor().looks_through());
@@ -893,9 +871,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     // A click on a row's label selects the keys of the row, and a marquee can start there.
     let row = place_of(&harness, &format!("{track} key 1"));
     let at = pos2(30.0, row.y);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(at);
     let all = [0, 1].map(|index| KeyId {
         track: Some(0),
         index,
@@ -1026,9 +1002,7 @@ fn paths_go_out_to_a_table_and_come_back() {
 fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
     let mut scene = flight();
     (scene.render.width, scene.render.height) = (160, 120);
-    let document = Document::of(scene);
-    let text = document.to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(scene);
     let frame = 77;
     let time = harness.scene().animation.time_of(frame);
     assert!(!harness.editor().is_dirty(), "opening changes nothing");

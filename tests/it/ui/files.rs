@@ -327,8 +327,7 @@ fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
 
 #[test]
 fn a_window_that_rests_draws_nothing() {
-    let text = Document::of(Scene::demo()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::demo());
     let delay = |harness: &EditorHarness| {
         let output = &harness.window.output().viewport_output;
         output[&egui::ViewportId::ROOT].repaint_delay
@@ -367,8 +366,7 @@ fn povray_gets_what_is_on_show() {
 
 #[test]
 fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imports_them() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::empty());
     let before = harness.scene().clone();
     let corners = |place: f64| format!("v {place} 0 0\nv {place} 900 0\nv {place} 0 900\n");
     for (name, place) in [("far.obj", 3000.0), ("near.obj", 100.0)] {
@@ -417,8 +415,7 @@ fn an_import_into_an_empty_scene_leaves_the_shot() {
 
 #[test]
 fn an_import_that_no_camera_can_see_whole_is_made_all_the_same() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::empty());
     let before = harness.scene().camera.clone();
     let path = harness.folder.path().join("wide.obj");
     std::fs::write(&path, "v 9e11 0 0\nv -9e11 0 0\nv 0 9e11 0\nf 1 2 3\n").expect("written");
@@ -444,13 +441,8 @@ fn unsaved_changes_survive_a_cancelled_open() {
 
 #[test]
 fn saving_works_from_within_a_field() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "position x")
-        .click();
-    harness.settle();
+    let mut harness = EditorHarness::on(Scene::empty());
+    harness.put_cursor_into("position x");
     harness.window.event(Event::Text("12.5".to_owned()));
     harness.settle();
     harness.press(CTRL, Key::S);
@@ -545,12 +537,7 @@ fn what_another_program_breaks_is_told_where_it_is() {
     harness.wait_for("what was written", |harness| {
         radius(harness.scene(), 0) == 31.5
     });
-    assert!(
-        harness
-            .window
-            .query_by_label_contains("given.ron:3:")
-            .is_none()
-    );
+    assert!(!harness.sees("given.ron:3:"));
 }
 
 #[test]
@@ -811,10 +798,7 @@ fn a_flight_that_is_still_recorded_is_asked_about() {
         None,
     );
     harness.press(Modifiers::NONE, Key::R);
-    harness.window.key_down(Key::W);
-    (0..40).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::W);
-    harness.settle();
+    harness.hold(Key::W, 40);
     assert!(harness.editor().timeline().recorded().is_some());
     harness.press(CTRL, Key::N);
     // Enter presses the default button.
@@ -915,13 +899,11 @@ fn a_typed_name_is_taken_before_the_click_that_ends_it_and_belongs_to_its_item()
         field.rect().center()
     };
     let at = name(&harness);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(at);
     harness.press(CTRL, Key::A);
     harness.window.event(Event::Text("Ball".to_owned()));
     harness.settle();
-    let eye = harness.window.get_by_label("Hide Sphere 1").rect().center();
+    let eye = harness.middle_of("Hide Sphere 1");
     harness.window.drag_at(eye);
     harness.window.step();
     harness.window.drop_at(eye);

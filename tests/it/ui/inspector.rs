@@ -13,15 +13,6 @@ use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
 use crate::timeline::animation;
 
-/// Clicks a number to edit it as text.
-fn put_cursor_into(harness: &mut EditorHarness, field: &str) {
-    let number = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, field);
-    number.click();
-    harness.settle();
-}
-
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
     let mut harness = EditorHarness::new();
@@ -109,14 +100,14 @@ fn invalid_edits_are_refused_and_explained() {
         .window
         .get_by_label_contains("up must not be parallel to look_at");
     harness.click("Dismiss");
-    assert!(harness.window.query_by_label_contains("parallel").is_none());
+    assert!(!harness.sees("parallel"));
 }
 
 #[test]
 fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
-    put_cursor_into(&mut harness, "radius");
+    harness.put_cursor_into("radius");
     harness.window.event(Event::Text("3".to_owned()));
     harness.settle();
     harness.press(Modifiers::NONE, Key::Escape);
@@ -144,8 +135,7 @@ fn a_label_brings_the_default_back() {
 #[test]
 fn the_inspector_says_what_the_scene_needs() {
     let mut harness = EditorHarness::new();
-    harness.window.get_by_label("Needs").click();
-    harness.settle();
+    harness.click("Needs");
     harness
         .window
         .get_by_label("reflected rays, up to 1 bounce");
@@ -169,8 +159,7 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
     // Whichever is cheapest today, the default is far more accurate than required.
     assert_ne!(harness.scene().render.antialias, Sampling::default());
     assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
-    harness.window.get_by_label("Needs").click();
-    harness.settle();
+    harness.click("Needs");
     harness
         .window
         .get_by_label_contains("the cheapest within 50.0 dB");
@@ -249,7 +238,7 @@ fn panels_keep_their_width_while_numbers_change() {
 fn a_field_that_is_left_as_it_was_changes_nothing() {
     let mut harness = EditorHarness::new();
     for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
-        put_cursor_into(&mut harness, field);
+        harness.put_cursor_into(field);
         harness.press(Modifiers::NONE, Key::Enter);
         assert!(!harness.editor().is_dirty(), "{field}");
     }
@@ -260,7 +249,7 @@ fn escape_gives_a_typed_vector_up() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let before = harness.scene().objects[0].clone();
-    put_cursor_into(&mut harness, "center x");
+    harness.put_cursor_into("center x");
     harness.window.event(Event::Text("1, 2, 3".to_owned()));
     harness.settle();
     harness.press(Modifiers::NONE, Key::Escape);
@@ -326,7 +315,7 @@ fn what_is_typed_is_a_step_of_its_own_though_a_drag_ends_it() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let start = center(harness.scene(), 0);
-    put_cursor_into(&mut harness, "center x");
+    harness.put_cursor_into("center x");
     harness.window.event(Event::Text("5".to_owned()));
     harness.settle();
     harness.drag("center y", 40.0);
@@ -468,11 +457,7 @@ fn escape_gives_the_drag_of_a_number_up() {
 fn what_is_typed_for_several_is_for_all_however_it_is_ended() {
     let mut harness = EditorHarness::new();
     both_balls(&mut harness);
-    let field = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "center x");
-    field.click();
-    harness.settle();
+    harness.put_cursor_into("center x");
     harness.window.event(Event::Text("100".to_owned()));
     harness.settle();
     let away = harness.view().left_top() - vec2(4.0, 0.0);
@@ -488,7 +473,7 @@ fn others_get_what_the_last_of_them_has_already() {
     let (x, other) = (center(harness.scene(), 1).x, center(harness.scene(), 0));
     // Enter in a field without a change confirms its value.
     for field in ["radius", "center x", "specular green"] {
-        put_cursor_into(&mut harness, field);
+        harness.put_cursor_into(field);
         harness.press(Modifiers::NONE, Key::Enter);
     }
     let scene = harness.scene();
@@ -499,7 +484,7 @@ fn others_get_what_the_last_of_them_has_already() {
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::Z);
     let before = harness.scene().clone();
-    put_cursor_into(&mut harness, "radius");
+    harness.put_cursor_into("radius");
     harness.press(Modifiers::NONE, Key::Tab);
     assert_eq!(*harness.scene(), before);
     harness.unfold("color pack");

@@ -98,9 +98,7 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
     };
     for (method, warned) in [("edges", true), ("watertight", false)] {
         let at = row(&harness, method).expect("a row");
-        harness.window.drag_at(at);
-        harness.window.drop_at(at);
-        harness.settle();
+        harness.click_at(at);
         let mut warnings = harness
             .window
             .query_all_by_label_contains("Your scene uses this");

@@ -1,6 +1,6 @@
 //! Mouse tools in the picture: clicks, handles, and the camera.
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::{Item, Selection};
@@ -225,13 +225,7 @@ fn the_menu_is_about_what_is_there_also_where_that_is_not_known_yet() {
     harness.click("Sphere 2");
     let at = place(&harness, center(harness.scene(), 0));
     hover(&mut harness, at);
-    harness.window.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 1.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: NONE,
-    });
+    harness.turn_wheel(MouseWheelUnit::Line, 1.0);
     harness.window.step();
     button(&mut harness, at, PointerButton::Secondary, true, NONE);
     button(&mut harness, at, PointerButton::Secondary, false, NONE);
@@ -554,12 +548,7 @@ fn everything_is_found_by_its_name() {
         harness.scene().camera.projection,
         glint::scene::Projection::Orthographic
     );
-    assert!(
-        harness
-            .window
-            .query_by_label_contains("Enter runs the")
-            .is_none()
-    );
+    assert!(!harness.sees("Enter runs the"));
     // What is possible comes first: nothing is in a group yet.
     harness.click("Sphere 1");
     harness.press(CTRL, Key::K);
