@@ -4,9 +4,11 @@
 use glam::DVec3;
 use glint::lab::stability::{GOLDEN, mixed, share};
 use glint::scene::{
-    Camera, ColorPack, Disc, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape,
-    Sphere, Triangle, check,
+    Camera, ColorPack, Disc, Document, Light, LightObj, Object, Plane, Projection, Render, Scene,
+    Shape, Sphere, Triangle, check,
 };
+
+use crate::program::FLIGHT;
 
 /// Random numbers that are the same on every machine.
 pub struct Dice(pub u64);
@@ -72,8 +74,6 @@ pub fn published() -> [Scene; 2] {
     [first, second]
 }
 
-/// Triangles of arbitrary form over a floor that mirrors them and receives their shadows from two lights.
-pub fn shards() -> Scene {
 /// A scene as a whole, scaled about the origin and then moved.
 pub fn placed(mut scene: Scene, scale: f64, by: DVec3) -> Scene {
     for object in scene.objects.iter_mut() {
@@ -95,6 +95,8 @@ pub fn flight() -> Scene {
     Document::load(FLIGHT.as_ref()).expect("a scene").scene
 }
 
+/// Triangles of arbitrary form over a floor that mirrors them and receives their shadows from two lights.
+pub fn shards() -> Scene {
     let mut scene = Scene::demo();
     scene.objects.retain(|object| object.name == "Plane");
     let dice = &mut Dice(3);

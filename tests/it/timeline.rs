@@ -21,6 +21,7 @@ use glint::worker::{ThumbnailJob, Worker};
 use crate::harness::{CTRL, EditorHarness, survey_flight};
 use crate::pictures::picture;
 use crate::program::FLIGHT;
+use crate::random::flight;
 
 /// Unsaved work left by an ended program.
 fn unsaved(document: Document) -> Leftover {
@@ -29,10 +30,6 @@ fn unsaved(document: Document) -> Leftover {
         path: None,
         stamp: None,
     }
-}
-
-fn flight() -> Scene {
-    Document::load(FLIGHT.as_ref()).expect("a scene").scene
 }
 
 /// A window on the demo with camera keys at ten frames per second, each given as a time and an offset to the right.
