@@ -238,7 +238,7 @@ impl Study {
         let dot = &mut self.measurements[index];
         dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
-        dot.picture = Some(Arc::new(eight_bits(light, (size.0, size.1))));
+        dot.picture = Some(Arc::new(eight_bits(light, size)));
         dot.lanes = tracer.lanes();
     }
 
@@ -312,7 +312,7 @@ fn draw(
     let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);
-    Some(eight_bits(light, (size.0, size.1)))
+    Some(eight_bits(light, size))
 }
 
 impl Measurement {
