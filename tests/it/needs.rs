@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use glint::image::Image;
-use glint::plan::{Model, Plan, PlanCache, RenderRequest, needs};
+use glint::plan::{Model, Need, Plan, PlanCache, RenderRequest, needs};
 use glint::scene::{
     Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
 };
@@ -20,11 +20,15 @@ fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
     picture(scene, &wanted)
 }
 
-/// What the plan says about a rule.
-fn said(scene: &Scene, rule: &str) -> String {
+/// The plan's answer to a rule.
+fn need(scene: &Scene, rule: &str) -> Need {
     let needs = needs(scene, &RenderRequest::still(scene));
     let need = needs.into_iter().find(|need| need.rule == rule);
-    need.expect("a known rule").what
+    need.expect("a known rule")
+}
+
+fn said(scene: &Scene, rule: &str) -> String {
+    need(scene, rule).what
 }
 
 /// The demo with a change applied.
@@ -254,10 +258,7 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
 #[test]
 fn what_was_asked_for_is_said_to_be() {
     let why = |change: fn(&mut Scene), rule: &str| {
-        let scene = demo(change);
-        let needs = needs(&scene, &RenderRequest::still(&scene));
-        let need = needs.into_iter().find(|need| need.rule == rule);
-        let need = need.expect("a known rule");
+        let need = need(&demo(change), rule);
         format!("{}: {}", need.what, need.why)
     };
     let tree = why(
