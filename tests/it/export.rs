@@ -894,9 +894,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.type_name("frames", "1-40:3");
     harness.type_into("export width", "48");
     harness.type_into("export height", "48");
-    harness
-        .window
-        .get_by_label_contains("rayTrace1.ppm … rayTrace40.ppm");
+    harness.assert_says("rayTrace1.ppm … rayTrace40.ppm");
     see(&mut harness, "14 frames to make");
     harness.click("gif");
     harness.click("Start export");
@@ -921,11 +919,9 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
         made == files(&alone),
         "the same bytes, as the scene was at the start"
     );
-    harness.window.get_by_label_contains("14 frames in");
-    harness.window.get_by_label_contains("ppm + gif");
-    harness
-        .window
-        .get_by_label_contains("14 frames and frames.gif");
+    harness.assert_says("14 frames in");
+    harness.assert_says("ppm + gif");
+    harness.assert_says("14 frames and frames.gif");
     harness.click("Remove");
     // With the lights' markers hidden, the frames that showed one are different.
     see(&mut harness, "replace older files");
@@ -941,9 +937,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     assert_eq!(rows.count(), 1);
     see(&mut harness, "all 14 frames already exist, then frames.gif");
     harness.type_name("frames", "nonsense");
-    harness
-        .window
-        .get_by_label_contains("expected frames such as");
+    harness.assert_says("expected frames such as");
 }
 
 #[test]
@@ -1005,9 +999,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     see(&mut harness, "/202");
     harness.window.key_press_modifiers(CTRL, Key::Q);
     see(&mut harness, "Quit while exporting?");
-    harness
-        .window
-        .get_by_label_contains("Export animation can resume it next time");
+    harness.assert_says("Export animation can resume it next time");
     harness.window.get_by_label("Stay").click();
     harness.window.step();
     harness.window.step();
@@ -1040,7 +1032,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.window.get_by_label("Not finished");
     harness.click("Resume");
     finish(&mut harness);
-    harness.window.get_by_label_contains("202 frames in");
+    harness.assert_says("202 frames in");
     assert!(harness.window.query_by_label("Not finished").is_none());
     drop(harness);
     let sequence = sequence(sized_flight(512, 512), None, Format::Ppm, &folder);
@@ -1089,7 +1081,7 @@ fn the_window_writes_a_farm_job_and_its_scene() {
     let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
     let mut harness = EditorHarness::with(answer, None);
     harness.choose("File", "Export farm job…");
-    harness.window.get_by_label_contains("job.yaml and ");
+    harness.assert_says("job.yaml and ");
     let template = fs::read_to_string(harness.folder.path().join("job.yaml")).expect("written");
     assert!(template.contains("\"job.ron\"") && template.contains("\"1\""));
     let scene = Document::load(&harness.folder.path().join("job.ron"))
@@ -1103,7 +1095,7 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     let answer = |folder: &Path| vec![(Ask::ExportPovray, Some(folder.join("demo.pov")))];
     let mut harness = EditorHarness::with(answer, None);
     harness.choose("File", "Export for POV-Ray…");
-    harness.window.get_by_label_contains("Saved ");
+    harness.assert_says("Saved ");
     let by_window = fs::read_to_string(harness.folder.path().join("demo.pov")).expect("written");
     assert_eq!(by_window.matches("\ntriangle {").count(), 6);
     let folder = tempfile::tempdir().expect("a folder");

@@ -179,6 +179,12 @@ impl EditorHarness {
         seen.next().is_some()
     }
 
+    /// Asserts that the window shows one text that contains these words.
+    #[track_caller]
+    pub fn assert_says(&self, words: &str) {
+        self.window.get_by_label_contains(words);
+    }
+
     pub fn editor(&self) -> &Editor {
         self.window.state().editor()
     }
@@ -229,6 +235,12 @@ impl EditorHarness {
     /// The middle of what has this name.
     pub fn middle_of(&self, name: &str) -> Pos2 {
         self.window.get_by_label(name).rect().center()
+    }
+
+    /// Clicks while these modifier keys are held.
+    pub fn click_with(&mut self, modifiers: Modifiers, name: &str) {
+        self.window.get_by_label(name).click_modifiers(modifiers);
+        self.settle();
     }
 
     /// Turns the mouse wheel.
@@ -284,6 +296,12 @@ impl EditorHarness {
         self.settle();
     }
 
+    /// Types a text where the cursor is.
+    pub fn type_text(&mut self, text: &str) {
+        self.window.event(Event::Text(text.to_owned()));
+        self.settle();
+    }
+
     /// Clicks a number to edit it as text.
     pub fn put_cursor_into(&mut self, field: &str) {
         self.window
@@ -295,8 +313,7 @@ impl EditorHarness {
     /// Replaces the number in a field by typing.
     pub fn type_into(&mut self, field: &str, text: &str) {
         self.put_cursor_into(field);
-        self.window.event(Event::Text(text.to_owned()));
-        self.settle();
+        self.type_text(text);
         self.press(Modifiers::NONE, Key::Enter);
     }
 
@@ -333,8 +350,7 @@ impl EditorHarness {
             .click();
         self.settle();
         self.press(CTRL, Key::A);
-        self.window.event(Event::Text(text.to_owned()));
-        self.settle();
+        self.type_text(text);
         self.press(Modifiers::NONE, Key::Enter);
     }
 

@@ -23,13 +23,15 @@ use crate::pictures::picture;
 use crate::program::FLIGHT;
 use crate::random::flight;
 
-/// Unsaved work left by an ended program.
-fn unsaved(document: Document) -> Leftover {
-    Leftover {
+/// An editor with unsaved work left by an ended program.
+fn recovered(document: Document) -> Editor {
+    let mut editor = Editor::demo();
+    editor.recover(Leftover {
         document,
         path: None,
         stamp: None,
-    }
+    });
+    editor
 }
 
 /// A window on the demo with camera keys at ten frames per second, each given as a time and an offset to the right.
@@ -88,11 +90,7 @@ fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modi
 /// Selects the second and the third camera key.
 fn select_two_keys(harness: &mut EditorHarness) {
     harness.click("Key 2");
-    harness
-        .window
-        .get_by_label("Key 3")
-        .click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Key 3");
 }
 
 /// Width of a second on the timeline, in points.
@@ -137,12 +135,11 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     assert!((first - start.position).length() < 2.0, "{first:?}");
     assert!((last - end.position).length() < 2.0, "{last:?}");
     assert!(harness.editor().looks_through(), "the flight is shown");
-    harness.window.get_by_label_contains("samples → ");
+    harness.assert_says("samples → ");
     assert_eq!(harness.editor().undo_label(), Some("Record flight"));
     // The slider makes new keys from the same take.
-    let mut editor = Editor::demo();
     let text = harness.editor().to_text().expect("a text");
-    editor.recover(unsaved(Document::from_text(&text).expect("a scene")));
+    let mut editor = recovered(Document::from_text(&text).expect("a scene"));
     editor.apply(Action::Time(Time::Simplify(0.1)));
     survey_flight(&mut editor);
     let fine = editor.scene().animation.keys.len();
@@ -181,8 +178,7 @@ fn no_recorded_flight_is_lost_while_it_becomes_keys() {
 
 #[test]
 fn a_recording_without_a_movement_leaves_the_flight_as_it_is() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     let before = editor.scene().animation.clone();
     editor.apply(Action::Time(Time::Record));
     for tenth in 0..20 {
@@ -240,8 +236,7 @@ fn keys_are_set_overwritten_and_deleted() {
 
 #[test]
 fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(
@@ -275,8 +270,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
 
 #[test]
 fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording").deviation;
     let before = editor.scene().animation.clone();
@@ -336,7 +330,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     drag(&mut harness, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
     assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
     let words = "This has replaced 1 key; undo brings it back";
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
     // Keys cannot be moved before the start.
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
@@ -357,7 +351,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     assert_eq!(harness.editor().undo_label(), Some("Key: time"));
     harness.type_into("first at", "3");
     assert_eq!(times(&harness), [0.0, 3.0, 4.0]);
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
 }
 
 #[test]
@@ -499,7 +493,7 @@ fn the_window_plays_and_pauses() {
         "a second of steps: {playhead}"
     );
     assert!(harness.editor().looks_through());
-    harness.window.get_by_label_contains(" of 10 fps");
+    harness.assert_says(" of 10 fps");
     harness.press(Modifiers::NONE, Key::G);
     assert!(!harness.editor().timeline().is_playing);
     assert_eq!(
@@ -545,7 +539,7 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
         ("playback speed", "fast", "“fast” is not a number"),
     ] {
         harness.type_into(field, text);
-        harness.window.get_by_label_contains(words);
+        harness.assert_says(words);
         assert_eq!(harness.scene(), &before, "{field}: {text}");
     }
     assert_eq!(harness.editor().timeline().speed, 1.0);
@@ -603,9 +597,7 @@ fn a_flight_that_nothing_can_stretch_stays_as_it_is() {
     let mut harness = EditorHarness::on(scene);
     let before = harness.scene().clone();
     harness.type_into("length of the flight", "1");
-    harness
-        .window
-        .get_by_label_contains("length of the flight must be between");
+    harness.assert_says("length of the flight must be between");
     assert_eq!(harness.scene(), &before);
 }
 
@@ -749,7 +741,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.tracks.is_empty());
     let told = "Delete Sun: keys were deleted too (Sun: intensity)";
-    harness.window.get_by_label_contains(told);
+    harness.assert_says(told);
 }
 
 #[test]
@@ -803,11 +795,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     assert_eq!((key.time, key.value), (1.5, Value::Number(0.5)));
     assert_eq!(harness.scene().lights[0].intensity, 0.2, "its own stays");
     // It is still selected; with a camera key added, both are moved by the same amount.
-    harness
-        .window
-        .get_by_label("Key 2")
-        .click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Key 2");
     assert_eq!(harness.editor().selection().keys().len(), 2);
     let at = place_of(&harness, "Key 2");
     let by = vec2(0.5 * points_per_second(&harness), 0.0);
@@ -971,16 +959,12 @@ fn paths_go_out_to_a_table_and_come_back() {
         assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
     }
     harness.choose("Animate", "Import path…");
-    harness
-        .window
-        .get_by_label_contains("camera already has the");
+    harness.assert_says("camera already has the");
     let broken = harness.folder.path().join("broken.csv");
     std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
     let kept = harness.scene().animation.keys.clone();
     harness.choose("Animate", "Import path…");
-    harness
-        .window
-        .get_by_label_contains("line 3: there are two lines for the time 0");
+    harness.assert_says("line 3: there are two lines for the time 0");
     assert_eq!(
         harness.scene().animation.keys,
         kept,
@@ -989,9 +973,7 @@ fn paths_go_out_to_a_table_and_come_back() {
     open_presets(&mut harness);
     harness.click("Turntable");
     harness.choose("Animate", "Export path…");
-    harness
-        .window
-        .get_by_label_contains("circle.csv without interpolation and easing of the keys");
+    harness.assert_says("circle.csv without interpolation and easing of the keys");
 }
 
 /// A frame rendered on the command line equals the frame at the playhead in the window, byte by byte.

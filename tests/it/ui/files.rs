@@ -68,9 +68,7 @@ fn a_file_that_is_there_is_replaced_once_that_is_meant() {
     harness.press(Modifiers::COMMAND, Key::S);
     let text = path.to_str().expect("plain");
     harness.type_name("Path (this desktop offers no file dialog)", text);
-    harness
-        .window
-        .get_by_label_contains("already exists. Replace it?");
+    harness.assert_says("already exists. Replace it?");
     let held = || std::fs::read_to_string(&path).expect("read");
     assert_eq!(held(), "theirs");
     harness.click("Replace it");
@@ -106,7 +104,7 @@ fn a_name_that_cannot_be_written_is_told_where_it_is_typed() {
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::S);
     let long = harness.folder.path().join("a".repeat(300));
     harness.type_name(field, long.to_str().expect("plain"));
-    harness.window.get_by_label_contains("File name too long");
+    harness.assert_says("File name too long");
     let short = harness.folder.path().join("short.ron");
     harness.type_name(field, short.to_str().expect("plain"));
     assert!(short.exists());
@@ -171,13 +169,11 @@ fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
     let answers = |folder: &std::path::Path| vec![(Ask::OpenScene, Some(folder.join("given.ron")))];
     let text = "Scene(\n    version: 1,\n    objects: [5],\n)\n";
     let mut harness = EditorHarness::with(answers, Some(text));
-    harness
-        .window
-        .get_by_label_contains("given.ron:3:15: expected Object(…)");
+    harness.assert_says("given.ron:3:15: expected Object(…)");
     assert_eq!(harness.scene(), &Scene::demo());
     harness.click("Dismiss");
     harness.press(Modifiers::COMMAND, Key::O);
-    harness.window.get_by_label_contains("given.ron:3:15");
+    harness.assert_says("given.ron:3:15");
     assert_eq!(harness.scene(), &Scene::demo());
 }
 
@@ -311,7 +307,7 @@ fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
     harness.click("Dismiss");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     let refusal = "\"Bunny\" cannot be shown, and no frame is made without it";
-    harness.window.get_by_label_contains(refusal);
+    harness.assert_says(refusal);
     assert!(
         harness
             .window
@@ -321,7 +317,7 @@ fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
     );
     harness.press(Modifiers::NONE, Key::Escape);
     harness.choose("File", "Export farm job…");
-    harness.window.get_by_label_contains(refusal);
+    harness.assert_says(refusal);
     assert!(!harness.folder.path().join("job.yaml").exists());
 }
 
@@ -422,7 +418,7 @@ fn an_import_that_no_camera_can_see_whole_is_made_all_the_same() {
     harness.drop_file(path);
     assert_eq!(harness.scene().objects.len(), 1);
     assert_eq!(harness.scene().camera, before);
-    harness.window.get_by_label_contains("F frames them");
+    harness.assert_says("F frames them");
 }
 
 #[test]
@@ -443,8 +439,7 @@ fn unsaved_changes_survive_a_cancelled_open() {
 fn saving_works_from_within_a_field() {
     let mut harness = EditorHarness::on(Scene::empty());
     harness.put_cursor_into("position x");
-    harness.window.event(Event::Text("12.5".to_owned()));
-    harness.settle();
+    harness.type_text("12.5");
     harness.press(CTRL, Key::S);
     harness.settle();
     assert!(!harness.editor().is_dirty());
@@ -473,7 +468,7 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     harness.choose("File", "Import mesh…");
     assert_eq!(harness.scene().objects.len(), before + 2);
     harness.click("tail");
-    harness.window.get_by_label_contains("2 triangles");
+    harness.assert_says("2 triangles");
     harness.click("Separate");
     assert_eq!(harness.scene().objects.len(), before + 3);
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -481,7 +476,7 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     assert_eq!(harness.scene().objects.len(), before, "one step each");
     harness.choose("File", "Import mesh…");
     assert_eq!(harness.scene().objects.len(), before);
-    harness.window.get_by_label_contains("bad.stl");
+    harness.assert_says("bad.stl");
     harness.click("Triangle 1");
     harness.click("Join connected");
     assert_eq!(harness.scene().objects.len(), before - 5);
@@ -547,9 +542,7 @@ fn what_another_program_writes_is_read_anew_and_can_be_undone() {
         radius(harness.scene(), 0) == 31.5
     });
     assert!(!harness.editor().is_dirty());
-    harness
-        .window
-        .get_by_label_contains("changed by another program");
+    harness.assert_says("changed by another program");
     harness.press(CTRL, Key::Z);
     assert_eq!(radius(harness.scene(), 0), 20.0);
     assert!(harness.editor().is_dirty());
@@ -630,9 +623,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.click("roof");
     harness.type_into("position x", "6");
     harness.press(CTRL, Key::S);
-    harness
-        .window
-        .get_by_label_contains("the contents of roof.obj are in the scene file now");
+    harness.assert_says("the contents of roof.obj are in the scene file now");
     let saved = |harness: &EditorHarness| {
         let path = harness.folder.path().join("given.ron");
         Document::load(&path).expect("valid").scene == **harness.editor().scene()
@@ -678,9 +669,7 @@ fn both_changed_one_is_asked_which_is_to_stay() {
     for answer in ["Keep mine", "Take theirs"] {
         let (mut harness, path) = changed_outside(edit);
         harness.wait_for("the question", is_asked);
-        harness
-            .window
-            .get_by_label_contains("2 objects changed: Sphere 1, Sphere 2");
+        harness.assert_says("2 objects changed: Sphere 1, Sphere 2");
         harness.click(answer);
         harness.press(CTRL, Key::S);
         assert!(!is_asked(&harness));
@@ -850,9 +839,7 @@ fn work_that_was_left_is_taken_up_when_its_file_is_opened_later() {
     harness.drop_file(second);
     assert_eq!(radius(harness.scene(), 0), 31.5);
     assert!(harness.editor().is_dirty());
-    harness
-        .window
-        .get_by_label_contains("Glint ended with unsaved changes to");
+    harness.assert_says("Glint ended with unsaved changes to");
 }
 
 #[test]
@@ -901,8 +888,7 @@ fn a_typed_name_is_taken_before_the_click_that_ends_it_and_belongs_to_its_item()
     let at = name(&harness);
     harness.click_at(at);
     harness.press(CTRL, Key::A);
-    harness.window.event(Event::Text("Ball".to_owned()));
-    harness.settle();
+    harness.type_text("Ball");
     let eye = harness.middle_of("Hide Sphere 1");
     harness.window.drag_at(eye);
     harness.window.step();

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, vec2};
+use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::editor::ItemKind;
@@ -96,9 +96,7 @@ fn invalid_edits_are_refused_and_explained() {
     harness.press_button("Camera");
     harness.type_into("up x", "-0.25, -0.25, -0.93");
     assert_eq!(harness.scene(), &Scene::demo());
-    harness
-        .window
-        .get_by_label_contains("up must not be parallel to look_at");
+    harness.assert_says("up must not be parallel to look_at");
     harness.click("Dismiss");
     assert!(!harness.sees("parallel"));
 }
@@ -108,13 +106,11 @@ fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     harness.put_cursor_into("radius");
-    harness.window.event(Event::Text("3".to_owned()));
-    harness.settle();
+    harness.type_text("3");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene(), &Scene::demo());
     harness.press(Modifiers::NONE, Key::F2);
-    harness.window.event(Event::Text("q".to_owned()));
-    harness.settle();
+    harness.type_text("q");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene(), &Scene::demo());
     harness.window.get_by_label("Filter").focus();
@@ -160,9 +156,7 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
     assert_ne!(harness.scene().render.antialias, Sampling::default());
     assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
     harness.click("Needs");
-    harness
-        .window
-        .get_by_label_contains("the cheapest within 50.0 dB");
+    harness.assert_says("the cheapest within 50.0 dB");
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene(), &small);
 }
@@ -250,8 +244,7 @@ fn escape_gives_a_typed_vector_up() {
     harness.click("Sphere 1");
     let before = harness.scene().objects[0].clone();
     harness.put_cursor_into("center x");
-    harness.window.event(Event::Text("1, 2, 3".to_owned()));
-    harness.settle();
+    harness.type_text("1, 2, 3");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene().objects[0], before);
 }
@@ -316,8 +309,7 @@ fn what_is_typed_is_a_step_of_its_own_though_a_drag_ends_it() {
     harness.click("Sphere 1");
     let start = center(harness.scene(), 0);
     harness.put_cursor_into("center x");
-    harness.window.event(Event::Text("5".to_owned()));
-    harness.settle();
+    harness.type_text("5");
     harness.drag("center y", 40.0);
     let end = center(harness.scene(), 0);
     assert_eq!(end.x, 5.0);
@@ -412,7 +404,7 @@ fn what_is_typed_and_not_taken_is_told() {
         ("diffuse hex", "#12", "“#12” is not a color"),
     ] {
         harness.type_into(field, text);
-        harness.window.get_by_label_contains(words);
+        harness.assert_says(words);
     }
     assert_eq!(harness.scene(), &Scene::demo());
     harness.type_into("diffuse hex", "#0f0");
@@ -458,8 +450,7 @@ fn what_is_typed_for_several_is_for_all_however_it_is_ended() {
     let mut harness = EditorHarness::new();
     both_balls(&mut harness);
     harness.put_cursor_into("center x");
-    harness.window.event(Event::Text("100".to_owned()));
-    harness.settle();
+    harness.type_text("100");
     let away = harness.view().left_top() - vec2(4.0, 0.0);
     click(&mut harness, away, Modifiers::NONE);
     let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
@@ -537,9 +528,7 @@ fn a_change_of_a_pack_is_for_the_packs_of_all() {
 fn several_get_packs_of_their_own_and_the_last_that_shares_one_keeps_it() {
     let mut harness = EditorHarness::new();
     harness.click("Triangle 1");
-    let last = harness.window.get_by_label("Triangle 6");
-    last.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 6");
     harness.click("Make unique");
     let triangles = || harness.scene().objects.iter().skip(2).take(6);
     let packs: Vec<_> = triangles()
@@ -557,9 +546,7 @@ fn several_get_packs_of_their_own_and_the_last_that_shares_one_keeps_it() {
 fn several_packs_are_changed_as_one() {
     let mut harness = EditorHarness::new();
     harness.click("sphere 1");
-    let last = harness.window.get_by_label("plane");
-    last.click_modifiers(CTRL);
-    harness.settle();
+    harness.click_with(CTRL, "plane");
     assert_eq!(
         harness.editor().selection().indices(ItemKind::Pack).len(),
         2
@@ -576,9 +563,7 @@ fn several_packs_are_changed_as_one() {
 fn triangles_that_are_dragged_together_stay_as_they_are() {
     let mut harness = EditorHarness::new();
     harness.click("Triangle 1");
-    let last = harness.window.get_by_label("Triangle 6");
-    last.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 6");
     assert_eq!(harness.editor().selection().items().len(), 6);
     harness.drag("b x", 20.0);
     let by = center(harness.scene(), 2) - center(&Scene::demo(), 2);
@@ -600,9 +585,7 @@ fn a_sum_may_be_typed() {
     harness.type_into("radius", "(2 + 1,5) * 4");
     assert_eq!(radius(harness.scene(), 0), 14.0);
     harness.type_into("radius", "7 *");
-    harness
-        .window
-        .get_by_label_contains("“7 *” is not a number");
+    harness.assert_says("“7 *” is not a number");
     assert_eq!(radius(harness.scene(), 0), 14.0);
 }
 

@@ -92,9 +92,7 @@ fn selected_keys_are_copied_to_the_playhead_and_frames_are_typed() {
     assert_eq!(harness.editor().undo_label(), Some("Copy keys"));
     harness.press(CTRL, Key::D);
     assert_eq!(times(&harness), [0.0, 1.0, 3.0]);
-    harness
-        .window
-        .get_by_label_contains("move it to where they should go");
+    harness.assert_says("move it to where they should go");
     // The playhead is on the frame nearest to a key.
     let mut harness = window(&[0.0, 0.34, 1.0]);
     harness.click("Key 2");
@@ -313,10 +311,10 @@ fn the_still_picture_stops_what_plays() {
 fn the_window_of_exports_follows_the_scene() {
     let mut harness = window(&[0.0, 1.0]);
     harness.press(crate::harness::CTRL.plus(Modifiers::SHIFT), Key::E);
-    harness.window.get_by_label_contains("11 frames");
+    harness.assert_says("11 frames");
     harness.click("Key 2");
     harness.type_into("time", "3");
-    harness.window.get_by_label_contains("31 frames");
+    harness.assert_says("31 frames");
 }
 
 #[test]
@@ -435,11 +433,10 @@ fn what_changes_no_camera_leaves_no_shot() {
 fn a_ready_made_flight_says_what_it_replaces() {
     let mut harness = window(&[0.0, 1.0]);
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("turntable".to_owned()));
-    harness.settle();
+    harness.type_text("turntable");
     harness.press(Modifiers::NONE, Key::Enter);
     let words = "Turntable has replaced 2 keys of the camera; undo brings them back";
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
     harness.press(CTRL, Key::Z);
     assert!(!harness.sees(words));
     assert_eq!(times(&harness), [0.0, 1.0]);

@@ -51,7 +51,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     );
     harness.click("Fastest below");
     harness.window.get_by_label("Lab picture");
-    harness.window.get_by_label_contains("Leave Lab: ");
+    harness.assert_says("Leave Lab: ");
     assert!(
         harness
             .window

@@ -1,6 +1,6 @@
 //! The outliner: filtering, hiding, renaming, adding.
 
-use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton};
+use egui::{Key, Modifiers, MouseWheelUnit, PointerButton};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::scene::{Scene, Shape, Sphere};
@@ -22,10 +22,7 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     harness.press(Modifiers::ALT, Key::ArrowDown);
     assert_eq!(harness.scene().objects[1].name, "Sphere 1");
     harness.press(Modifiers::NONE, Key::F2);
-    harness
-        .window
-        .event(Event::Text("Sphere of glass".to_owned()));
-    harness.settle();
+    harness.type_text("Sphere of glass");
     harness.press(Modifiers::NONE, Key::Enter);
     assert_eq!(harness.scene().objects[1].name, "Sphere of glass");
     harness.press(Modifiers::COMMAND, Key::D);
@@ -207,8 +204,7 @@ fn a_name_that_is_edited_out_of_sight_is_left() {
     let mut harness = EditorHarness::on(scene);
     harness.click("Sphere 1");
     harness.press(Modifiers::NONE, Key::F2);
-    harness.window.event(Event::Text("Other".to_owned()));
-    harness.settle();
+    harness.type_text("Other");
     let row = harness.middle_of("Plane");
     hover(&mut harness, row);
     let roll = |harness: &mut EditorHarness, lines: f32| {
@@ -257,10 +253,7 @@ fn what_wears_the_same_pack_is_selected_lights_too_and_the_rest_stays_so() {
     let mut harness = EditorHarness::new();
     let same_pack = |harness: &mut EditorHarness| {
         harness.press(CTRL, Key::K);
-        harness
-            .window
-            .event(Event::Text("select all with this".to_owned()));
-        harness.settle();
+        harness.type_text("select all with this");
         harness.press(Modifiers::NONE, Key::Enter);
     };
     harness.click("Light 1");
@@ -282,23 +275,17 @@ fn what_wears_the_same_pack_is_selected_lights_too_and_the_rest_stays_so() {
 #[test]
 fn things_are_deleted_with_the_packs_that_they_wear() {
     let mut harness = EditorHarness::new();
-    let with_control = |harness: &mut EditorHarness, name: &str| {
-        harness.window.get_by_label(name).click_modifiers(CTRL);
-        harness.settle();
-    };
     harness.click("Sphere 1");
-    with_control(&mut harness, "sphere 1");
+    harness.click_with(CTRL, "sphere 1");
     harness.press(Modifiers::NONE, Key::Delete);
     let scene = harness.scene();
     assert!(scene.objects.len() == 8 && !scene.color_packs.contains_key("sphere 1"));
     // Shift adds an item of another list.
     harness.click("Light 1");
-    let shifted = harness.window.get_by_label("Sphere 2");
-    shifted.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Sphere 2");
     assert_eq!(harness.editor().selection().items().len(), 2);
     harness.click("sphere 2");
-    with_control(&mut harness, "tetrahedron");
+    harness.click_with(CTRL, "tetrahedron");
     let packs = harness.scene().color_packs.len();
     harness.press(CTRL, Key::D);
     assert_eq!(harness.scene().color_packs.len(), packs + 2);

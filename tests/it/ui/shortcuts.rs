@@ -143,8 +143,7 @@ fn a_shortcut_is_one_however_long_control_was_held_before() {
 /// Types into the finder and runs the first match.
 fn find(harness: &mut EditorHarness, text: &str) {
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text(text.to_owned()));
-    harness.settle();
+    harness.type_text(text);
     harness.press(Modifiers::NONE, Key::Enter);
 }
 

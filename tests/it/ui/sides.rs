@@ -68,36 +68,29 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
         harness.window.drop_at(at);
     }
     harness.settle();
-    harness.window.event(Event::Text("Balls".to_owned()));
-    harness.settle();
+    harness.type_text("Balls");
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Balls", "Balls", ""]);
     // The key renames groups, too.
     harness.click("Balls");
     harness.press(NONE, Key::F2);
-    harness.window.event(Event::Text("Toys".to_owned()));
-    harness.settle();
+    harness.type_text("Toys");
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Toys", "Toys", ""]);
     harness.press(CTRL, Key::Z);
     // Renaming does not merge two groups.
     harness.click("Triangle 1");
-    let second = harness.window.get_by_label("Triangle 2");
-    second.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 2");
     harness.press(CTRL, Key::G);
     harness.type_name("group", "Balls");
-    harness
-        .window
-        .get_by_label_contains("There is another group named “Balls”");
+    harness.assert_says("There is another group named “Balls”");
     assert_eq!(groups(&harness), ["Balls", "Balls", "Group 1"]);
     harness.click("Dismiss");
     // A folded group stays folded when it is renamed.
     harness.click("Fold Group 1");
     harness.click("Group 1");
     harness.press(NONE, Key::F2);
-    harness.window.event(Event::Text("Balls".to_owned()));
-    harness.settle();
+    harness.type_text("Balls");
     harness.press(NONE, Key::Enter);
     harness.window.get_by_label("Unfold Group 1");
     harness.window.get_by_label("Fold Balls");
@@ -267,9 +260,7 @@ fn an_error_goes_when_the_same_is_tried_again() {
         .events
         .push(Event::Paste("nonsense".to_owned()));
     harness.settle();
-    harness
-        .window
-        .get_by_label_contains("The clipboard holds no");
+    harness.assert_says("The clipboard holds no");
     let light = r#"Light(name: "l", position: (1, 2, 3))"#;
     harness
         .window
@@ -404,8 +395,7 @@ fn tab_goes_from_a_value_to_the_next_one() {
     harness.click("Picture");
     harness.put_cursor_into("width");
     for (text, key) in [("900", Key::Tab), ("700", Key::Enter)] {
-        harness.window.event(Event::Text(text.to_owned()));
-        harness.settle();
+        harness.type_text(text);
         harness.press(NONE, key);
     }
     let render = &harness.scene().render;
@@ -471,7 +461,7 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     assert!(!harness.sees(told));
     harness.click("Sphere 2");
     harness.press(CTRL, Key::D);
-    harness.window.get_by_label_contains(told);
+    harness.assert_says(told);
 }
 
 #[test]
