@@ -33,12 +33,7 @@ fn published(name: &str) -> Scene {
 /// Only the floor and the lights of the demo, seen up to the horizon.
 fn floor() -> Scene {
     let mut scene = Scene::demo();
-    scene.objects = scene
-        .objects
-        .iter()
-        .filter(|object| object.name == "Plane")
-        .cloned()
-        .collect();
+    scene.objects.retain(|object| object.name == "Plane");
     scene.camera.position = DVec3::new(0.0, 70.0, 170.0);
     scene.camera.look_at = DVec3::new(0.0, -0.25, -1.0);
     scene
@@ -53,12 +48,7 @@ fn spread(index: u32, axis: i32) -> f64 {
 fn balls(count: u32, are_mirrors: bool) -> Scene {
     let mut scene = floor();
     let pack = "sphere 1";
-    if are_mirrors {
-        scene
-            .packs_mut()
-            .entry(pack.into())
-            .and_modify(|pack| pack.reflective = true);
-    }
+    scene.packs_mut()[pack].reflective |= are_mirrors;
     for index in 1..=count {
         let at = [1, 2, 3].map(|axis| spread(index, axis) - 0.5);
         scene.objects.push(Object::new(

@@ -10,8 +10,7 @@ use std::sync::Arc;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use glint::export::{ExportStep, Exporting};
-use glint::export::{Pattern, Sequence};
+use glint::export::{ExportStep, Exporting, Pattern, Sequence};
 use glint::image::Format;
 use glint::scene::{Document, Sampling};
 use glint::trace::{RenderControl, Threads};

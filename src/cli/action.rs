@@ -34,3 +34,13 @@ pub enum CliAction {
     /// Nothing: the command has run, and the process exits with this code.
     Done(ExitCode),
 }
+
+impl CliAction {
+    /// Draws measurements, if a picture was requested.
+    pub fn drawing(figure: Figure, path: Option<PathBuf>) -> Self {
+        path.map_or(Self::Done(ExitCode::SUCCESS), |path| Self::Draw {
+            figure,
+            path,
+        })
+    }
+}

@@ -112,19 +112,13 @@ impl ChartArgs {
             _ => Ok(()),
         }
     }
-
-    /// The action that draws a figure, if a picture was requested.
-    fn draw_action(&self, figure: Figure) -> Option<CliAction> {
-        let path = self.png.clone();
-        path.map(|path| CliAction::Draw { figure, path })
-    }
 }
 
 /// Measures, prints the table, and writes the CSV file. Drawing the picture is left to the caller.
 ///
 /// # Errors
 /// [`CliError`], if a scene is invalid, if the picture has no known format, or if a file cannot be written.
-pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
+pub fn run(args: &ChartArgs) -> Result<CliAction, CliError> {
     // A bad file name is reported before anything is traced.
     picture_format(args.png.as_deref())?;
     args.check_size()?;
@@ -176,11 +170,12 @@ pub fn run(args: &ChartArgs) -> Result<Option<CliAction>, CliError> {
     }
     let machine = format!("{}, {}", counted(threads.count(), "thread"), processor());
     let look = args.picture_look();
-    Ok(args.draw_action(Figure::Chart {
+    let figure = Figure::Chart {
         studies,
         machine,
         look,
-    }))
+    };
+    Ok(CliAction::drawing(figure, args.png.clone()))
 }
 
 /// Name of a scene: the stem of its file, or its whole path if other scenes have the same stem.
@@ -210,7 +205,7 @@ fn parse_picture_size(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// Measures how time grows with the number of primitives, and prints and writes the costs.
-fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<Option<CliAction>, CliError> {
+fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<CliAction, CliError> {
     let mut growth = Growth::new(args.side, MAX_PRIMITIVES);
     if args.povray {
         growth = growth.with_povray();
@@ -236,14 +231,12 @@ fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<Option<CliActio
     if let Some(path) = &args.csv {
         write_text(path, &growth.csv()?)?;
     }
-    Ok(args.draw_action(Figure::Growth(growth, args.picture_look())))
+    let figure = Figure::Growth(growth, args.picture_look());
+    Ok(CliAction::drawing(figure, args.png.clone()))
 }
 
 /// Simulates how more cores would share the pictures of the scenes, and prints and writes the figures.
-fn simulate_cores(
-    args: &ChartArgs,
-    scenes: &[(&PathBuf, Scene)],
-) -> Result<Option<CliAction>, CliError> {
+fn simulate_cores(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<CliAction, CliError> {
     // One thread, because planning is done by one worker alone.
     let alone = Threads::new(Some(1))?;
     let mut pictures = Vec::new();
@@ -269,7 +262,8 @@ fn simulate_cores(
     if let Some(path) = &args.csv {
         write_text(path, &scaling_csv(&pictures)?)?;
     }
-    Ok(args.draw_action(Figure::Scaling(pictures, args.picture_look())))
+    let figure = Figure::Scaling(pictures, args.picture_look());
+    Ok(CliAction::drawing(figure, args.png.clone()))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {

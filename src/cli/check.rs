@@ -21,22 +21,19 @@ pub struct CheckArgs {
 pub fn run(args: &CheckArgs) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for path in &args.scenes {
-        match Document::load(path) {
+        let problems = match Document::load(path) {
             Ok(Document { scene, .. }) => {
                 let missing = missing_meshes(path, &scene);
                 if missing.is_empty() {
                     say(&format!("{}: ok, {}", path.display(), contents(&scene)));
-                    continue;
                 }
-                for problem in missing {
-                    report_error(&problem);
-                }
-                code = WRONG.into();
+                missing
             }
-            Err(error) => {
-                report_error(&error.to_string());
-                code = WRONG.into();
-            }
+            Err(error) => vec![error.to_string()],
+        };
+        for problem in problems {
+            report_error(&problem);
+            code = WRONG.into();
         }
     }
     code

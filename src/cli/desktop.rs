@@ -53,10 +53,11 @@ pub fn install(mut command: Command) -> Result<(), CliError> {
 
 /// The user's data folder, according to the XDG Base Directory Specification.
 fn data_folder() -> Option<PathBuf> {
-    let path_var = |name| env::var_os(name).map(PathBuf::from);
-    let data_home = path_var("XDG_DATA_HOME").filter(|folder| folder.is_absolute());
-    let home = path_var("HOME").filter(|folder| folder.is_absolute());
-    data_home.or_else(|| home.map(|home| home.join(".local/share")))
+    let folder = |name| {
+        let folder = env::var_os(name).map(PathBuf::from);
+        folder.filter(|folder| folder.is_absolute())
+    };
+    folder("XDG_DATA_HOME").or_else(|| Some(folder("HOME")?.join(".local/share")))
 }
 
 /// A menu entry according to the Desktop Entry Specification.

@@ -11,9 +11,9 @@ use super::args::{SizeArgs, ThreadsArgs};
 use super::bar::{TICK, progress_bar, restyle};
 use super::error::{CliError, report_warning, say};
 use super::scene::read_whole_document;
-use crate::export::{ExportError, ExportStep, Exported, Exporting};
 use crate::export::{
-    Frames, JobError, LOOP_HINT, Pattern, Sequence, Video, check_writable, write_job,
+    ExportError, ExportStep, Exported, Exporting, Frames, JobError, LOOP_HINT, Pattern, Sequence,
+    Video, check_writable, write_job,
 };
 use crate::image::Format;
 use crate::scene::{Method as _, Sampling, Scene};

@@ -107,20 +107,19 @@ enum CliCommand {
 
 /// Parses the command line and runs its command, if there is one.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
-    match run_words(words.into_iter().collect()) {
+    let result = run_words(words.into_iter().collect());
+    match result.unwrap_or_else(|error| CliAction::Done(error.report())) {
         CliAction::Done(code) => CliAction::Done(finish(code)),
         action => action,
     }
 }
 
-fn run_words(words: Vec<OsString>) -> CliAction {
-    let done = |result: Result<(), CliError>| {
-        CliAction::Done(result.map_or_else(|error| error.report(), |()| ExitCode::SUCCESS))
-    };
+fn run_words(words: Vec<OsString>) -> Result<CliAction, CliError> {
+    let done = |()| CliAction::Done(ExitCode::SUCCESS);
     if let Some(name) = unknown_command(&words) {
         if Path::new(&name).is_file() {
             let sentence = format!("the editor opens one scene: remove what follows {name:?}");
-            return done(Err(CliError::usage(sentence)));
+            return Err(CliError::usage(sentence));
         }
         let commands = CliArgs::command();
         let command_names: Vec<&str> = commands
@@ -128,9 +127,9 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             .map(clap::Command::get_name)
             .collect();
         let command_names = command_names.join(", ");
-        return done(Err(CliError::usage(format!(
+        return Err(CliError::usage(format!(
             "there is no command {name:?}; the commands are {command_names}, and `glint SCENE` opens the editor"
-        ))));
+        )));
     }
     let words = match CliArgs::try_parse_from(words) {
         Ok(words) => words,
@@ -138,7 +137,7 @@ fn run_words(words: Vec<OsString>) -> CliAction {
             // clap returns help and version as "errors" that go to stdout and have exit code 0.
             if error.use_stderr() {
                 let _ = error.print();
-                return CliAction::Done(WRONG.into());
+                return Ok(CliAction::Done(WRONG.into()));
             }
             let text = error.render();
             let text = if stdout().is_terminal() && has_colors() {
@@ -147,26 +146,21 @@ fn run_words(words: Vec<OsString>) -> CliAction {
                 text.to_string()
             };
             say(text.trim_end());
-            return done(Ok(()));
+            return Ok(done(()));
         }
     };
-    let result = match &words.command {
-        Some(CliCommand::Render(args)) => render::run(args).map(|()| None),
-        Some(CliCommand::Export(args)) => export::run(args).map(|()| None),
-        Some(CliCommand::Job(args)) => export::run_job(args).map(|()| None),
-        Some(CliCommand::Check(args)) => return CliAction::Done(check::run(args)),
-        Some(CliCommand::Convert(args)) => convert::run(args).map(|()| None),
-        Some(CliCommand::Plan(args)) => plan::run(args).map(|()| None),
+    match &words.command {
+        Some(CliCommand::Render(args)) => render::run(args).map(done),
+        Some(CliCommand::Export(args)) => export::run(args).map(done),
+        Some(CliCommand::Job(args)) => export::run_job(args).map(done),
+        Some(CliCommand::Check(args)) => Ok(CliAction::Done(check::run(args))),
+        Some(CliCommand::Convert(args)) => convert::run(args).map(done),
+        Some(CliCommand::Plan(args)) => plan::run(args).map(done),
         Some(CliCommand::Chart(args)) => chart::run(args),
         Some(CliCommand::Stability(args)) => stability::run(args),
-        Some(CliCommand::Referee(args)) => referee::run(args).map(|()| None),
-        None if words.install_desktop => desktop::install(CliArgs::command()).map(|()| None),
-        None => words.editor().map(Some),
-    };
-    match result {
-        Ok(Some(action)) => action,
-        Ok(None) => done(Ok(())),
-        Err(error) => done(Err(error)),
+        Some(CliCommand::Referee(args)) => referee::run(args).map(done),
+        None if words.install_desktop => desktop::install(CliArgs::command()).map(done),
+        None => words.editor(),
     }
 }
 

@@ -18,7 +18,7 @@ use super::target::picture_format;
 use crate::animate::{CameraPath, shot};
 use crate::export::{NoSuchFrame, save_picture};
 use crate::image::{Film, Format, RenderCost};
-use crate::lab::{Choice, Goal, choose};
+use crate::lab::{Choice, Goal, choose, quantile};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Aspect, Method as _, Projection, Scene};
 use crate::simd::Level;
@@ -270,15 +270,9 @@ fn stats(
         .map(|cost| cost.time.as_secs_f64() * 1e3)
         .collect();
     millis.sort_by(f64::total_cmp);
-    let middle = millis.len() / 2;
-    let median = if millis.len() % 2 == 1 {
-        millis[middle]
-    } else {
-        f64::midpoint(millis[middle - 1], millis[middle])
-    };
     let RenderCost { rays, lanes, .. } = costs[0].clone();
     Stats {
-        trace_ms: median,
+        trace_ms: quantile(&millis, 0.5).unwrap_or_default(),
         trace_ms_min: millis[0],
         rays,
         lanes,

@@ -30,7 +30,7 @@ pub struct StabilityArgs {
 ///
 /// # Errors
 /// [`CliError`], if the picture has no known format, or if a file cannot be written.
-pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
+pub fn run(args: &StabilityArgs) -> Result<CliAction, CliError> {
     // A bad file name is reported before anything is traced.
     picture_format(args.png.as_deref())?;
     check_table(args.csv.as_deref())?;
@@ -39,6 +39,8 @@ pub fn run(args: &StabilityArgs) -> Result<Option<CliAction>, CliError> {
     if let Some(path) = &args.csv {
         write_text(path, &cells_csv(&maps)?)?;
     }
-    let (figure, path) = (Figure::Stability(maps), args.png.clone());
-    Ok(path.map(|path| CliAction::Draw { figure, path }))
+    Ok(CliAction::drawing(
+        Figure::Stability(maps),
+        args.png.clone(),
+    ))
 }

@@ -282,9 +282,9 @@ impl Exporting {
         let step = pending.film.size().1.div_ceil(SMALL_ROWS as usize).max(1);
         self.last = Some(Arc::new(pending.film.decimated(step)));
         let count = self.sequence.at_once(Threads::current());
-        let writers = match self.writers.take() {
+        let writers = match &mut self.writers {
             Some(writers) => writers,
-            None => Writers::start(&self.sequence, count)?,
+            none => none.insert(Writers::start(&self.sequence, count)?),
         };
         self.in_flight += 1;
         let is_taken = writers.write(WriteJob {
@@ -293,7 +293,6 @@ impl Exporting {
             fingerprint: pending.fingerprint,
             time: cost.time,
         });
-        self.writers = Some(writers);
         // They stop only after a frame that failed, whose result has the reason.
         if is_taken {
             Ok(())

@@ -1,5 +1,6 @@
 //! Fingerprints that tell whether an existing frame is up to date.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
@@ -7,7 +8,7 @@ use indexmap::IndexMap;
 use super::error::ExportError;
 use super::manifest::Hash;
 use crate::image::Format;
-use crate::scene::{ColorPack, Packs, Scene};
+use crate::scene::{Packs, Scene};
 
 /// Returns a hash of everything that determines the bytes of a frame: what is visible in it, how it is traced, the
 /// format and the version of the program.
@@ -46,22 +47,19 @@ fn number_packs(scene: &mut Scene) {
     let used = scene.used_packs();
     let packs = scene.color_packs.iter();
     let packs = packs.filter(|(name, _)| used.contains(name.as_str()));
-    let numbers: IndexMap<String, String> = packs
-        .clone()
-        .zip(0..)
-        .map(|((name, _), number)| (name.clone(), format!("{number}")))
-        .collect();
-    let packs: IndexMap<String, ColorPack> = packs
-        .zip(numbers.values())
-        .map(|((_, pack), number)| (number.clone(), pack.clone()))
-        .collect();
-    scene.color_packs = Packs::from(packs);
+    let (mut numbers, mut numbered) = (HashMap::new(), IndexMap::new());
+    for (number, (name, pack)) in packs.enumerate() {
+        numbers.insert(name.clone(), number.to_string());
+        numbered.insert(number.to_string(), pack.clone());
+    }
+    scene.color_packs = Packs::from(numbered);
     scene.replace_packs(|name| numbers.get(name).map(String::as_str));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::ColorPack;
 
     #[test]
     fn names_and_unworn_packs_decide_nothing_and_what_is_seen_does() {

@@ -163,30 +163,18 @@ fn job_template(sequence: &Sequence, name: &str, scene: &str) -> String {
     // A JSON string is also a YAML string.
     let quoted = |text: &str| serde_json::Value::from(text).to_string();
     let (width, height) = sequence.size();
-    let values = [
-        ("@NAME@", quoted(&job_name(name))),
-        ("@SCENE@", quoted(scene)),
-        ("@FRAMES@", quoted(&sequence.frames.to_string())),
-        ("@PATTERN@", quoted(&sequence.pattern.text())),
-        ("@FORMAT@", quoted(sequence.format.ending())),
-        ("@WIDTH@", width.to_string()),
-        ("@HEIGHT@", height.to_string()),
-        ("@ANTIALIAS@", quoted(&sequence.antialias())),
-        ("@CHUNK@", CHUNK.to_string()),
-    ];
-    let next_key = |remaining: &str| {
-        let keys_found = values.iter().filter_map(|(key, value)| {
-            let at = remaining.find(key)?;
-            Some((at, *key, value.clone()))
-        });
-        keys_found.min_by_key(|(at, ..)| *at)
-    };
-    // Inserted values are not searched for keys: a scene may have any name.
-    let (mut text, mut remaining) = (String::new(), TEMPLATE);
-    while let Some((at, key, value)) = next_key(remaining) {
-        text.push_str(&remaining[..at]);
-        text.push_str(&value);
-        remaining = &remaining[at + key.len()..];
-    }
-    text + remaining
+    // Every second part of the template is a key.
+    let parts = TEMPLATE.split('@').map(|part| match part {
+        "NAME" => quoted(&job_name(name)),
+        "SCENE" => quoted(scene),
+        "FRAMES" => quoted(&sequence.frames.to_string()),
+        "PATTERN" => quoted(&sequence.pattern.text()),
+        "FORMAT" => quoted(sequence.format.ending()),
+        "WIDTH" => width.to_string(),
+        "HEIGHT" => height.to_string(),
+        "ANTIALIAS" => quoted(&sequence.antialias()),
+        "CHUNK" => CHUNK.to_string(),
+        text => text.to_owned(),
+    });
+    parts.collect()
 }

@@ -1,6 +1,5 @@
 //! The buffer that a picture is traced into before it becomes a file: as precise as the file format.
 
-use std::borrow::Cow;
 use std::io::{Seek, Write};
 
 use image::ImageError;
@@ -79,15 +78,7 @@ impl Film {
         }
     }
 
-    /// The picture in 8 bits, as a screen shows it.
-    pub fn levels(&self) -> Cow<'_, Image> {
-        match self {
-            Self::Levels(image) => Cow::Borrowed(image),
-            Self::Linear(image) => Cow::Owned(image.to_levels()),
-        }
-    }
-
-    /// Converts the film into the picture in 8 bits.
+    /// Converts the film into the picture in 8 bits, as a screen shows it.
     pub fn into_levels(self) -> Image {
         match self {
             Self::Levels(image) => image,
@@ -101,8 +92,9 @@ impl Film {
     /// Errors of the encoder or of the system.
     pub fn encode(&self, format: Format, file: &mut (impl Write + Seek)) -> Result<(), ImageError> {
         match (self, format) {
+            (Self::Levels(image), _) => image.encode(format, file),
             (Self::Linear(image), Format::Exr) => image.encode(file),
-            _ => self.levels().encode(format, file),
+            (Self::Linear(image), _) => image.to_levels().encode(format, file),
         }
     }
 }
@@ -124,7 +116,8 @@ mod tests {
                 .expect("nobody stops it");
             film
         });
-        assert_eq!(films[0].levels(), films[1].levels());
+        let [levels, rounded] = films.clone().map(Film::into_levels);
+        assert_eq!(levels, rounded);
         let Film::Linear(light) = &films[1] else {
             panic!("EXR holds light");
         };

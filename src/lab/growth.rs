@@ -1,7 +1,6 @@
 //! Measures how the time of a picture grows with the content of the scene: a mesh of more and more faces, and more
 //! and more balls, over a floor and lit from two sides.
 
-use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 
 use glam::DVec3;
@@ -10,7 +9,7 @@ use serde::Serialize;
 use super::table::csv_of;
 use crate::export::by_povray;
 use crate::image::LinearRgb;
-use crate::mesh::Triangles;
+use crate::mesh::globe;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Sphere};
 use crate::trace::{Pass, RenderControl, Threads, Tracer};
@@ -278,40 +277,12 @@ fn stage() -> Scene {
 /// A ball with bumps that has roughly this number of faces.
 fn mesh(faces: u32) -> Scene {
     let rings = (f64::from(faces) / 4.0).sqrt().round().max(2.0) as u32;
-    let columns = 2 * rings;
-    let point_at = |ring: u32, column: u32| {
-        let polar = f64::from(ring) / f64::from(rings) * PI;
-        let azimuth = f64::from(column) / f64::from(columns) * TAU;
-        let radius = 42.0 + 4.0 * (6.0 * azimuth).sin() * (5.0 * polar).sin();
-        let (x, z) = (azimuth.cos() * polar.sin(), azimuth.sin() * polar.sin());
-        DVec3::new(x, polar.cos(), z) * radius
-    };
-    let mut points = vec![point_at(0, 0), point_at(rings, 0)];
-    points
-        .extend((1..rings).flat_map(|ring| (0..columns).map(move |column| point_at(ring, column))));
-    let number = |ring: u32, column: u32| match ring {
-        0 => 0,
-        _ if ring == rings => 1,
-        _ => 2 + (ring - 1) * columns + column % columns,
-    };
-    let mut all = Vec::new();
-    for ring in 0..rings {
-        for column in 0..columns {
-            let (a, b) = (number(ring, column), number(ring, column + 1));
-            let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
-            // Clockwise seen from outside.
-            if ring > 0 {
-                all.push([a, c, b]);
-            }
-            if ring + 1 < rings {
-                all.push([a, d, c]);
-            }
-        }
-    }
+    let radius =
+        |polar: f64, azimuth: f64| 42.0 + 4.0 * (6.0 * azimuth).sin() * (5.0 * polar).sin();
     let mut scene = stage();
     let mesh = Mesh {
         position: DVec3::new(0.0, 50.0, 0.0),
-        ..Mesh::of(Triangles::new(points, all).unwrap_or_default())
+        ..Mesh::of(globe(rings, radius))
     };
     scene.objects.push(Object::new("Ball", "thing", mesh));
     scene

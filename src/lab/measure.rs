@@ -54,6 +54,15 @@ pub fn difference(picture: &[LinearRgb], reference: &[LinearRgb]) -> ErrorMetric
     }
 }
 
+/// The quantile of numbers in ascending order, such as 0.5 for the median; `None` if there are none. Interpolated
+/// linearly between neighbours (Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician
+/// 50(4), 1996, definition 7).
+pub fn quantile(ascending: &[f64], share: f64) -> Option<f64> {
+    let rank = ascending.len().checked_sub(1)? as f64 * share;
+    let [below, above] = [rank.floor(), rank.ceil()].map(|rank| ascending[rank as usize]);
+    Some(below + (above - below) * rank.fract())
+}
+
 /// The mean of two pictures of the same size.
 pub fn mean(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
     let pixels = first.iter().zip(second);

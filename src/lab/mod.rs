@@ -41,7 +41,7 @@ pub use figure::{Figure, PictureLook};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, RenderMethod};
 pub use kept::{keep, kept};
-pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, mean, trace_light};
+pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, mean, quantile, trace_light};
 pub use pareto_front::{cheapest_within, closest_within, front};
 pub use quality::{Choice, Goal, choose};
 pub use scaling::{SharedPicture, scaling, scaling_csv};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, Family, candidates, povray};
-use super::measure::{ErrorMetrics, difference, eight_bits, mean, scaled, trace_light};
+use super::measure::{ErrorMetrics, difference, eight_bits, mean, quantile, scaled, trace_light};
 use crate::export::{PovrayError, by_povray};
 use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
@@ -238,7 +238,7 @@ impl Study {
         let dot = &mut self.measurements[index];
         dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
-        dot.picture = Some(Arc::new(eight_bits(light, (size.0, size.1))));
+        dot.picture = Some(Arc::new(eight_bits(light, size)));
         dot.lanes = tracer.lanes();
     }
 
@@ -312,7 +312,7 @@ fn draw(
     let (light, _) = trace_light(&tracer, control)?;
     let size = (scene.render.width as usize, scene.render.height as usize);
     let light = scaled(&light, (tracer.width(), tracer.height()), size);
-    Some(eight_bits(light, (size.0, size.1)))
+    Some(eight_bits(light, size))
 }
 
 impl Measurement {
@@ -348,13 +348,7 @@ impl Measurement {
     pub fn timing(&self) -> Option<Timing> {
         let mut times = self.times.clone();
         times.sort_by(f64::total_cmp);
-        // Linear interpolation between neighbours (Hyndman and Fan, "Sample quantiles in statistical packages", The
-        // American Statistician 50(4), 1996, definition 7).
-        let at = |share: f64| {
-            let rank = times.len().checked_sub(1)? as f64 * share;
-            let (below, above) = (times[rank.floor() as usize], times[rank.ceil() as usize]);
-            Some(below + (above - below) * rank.fract())
-        };
+        let at = |share| quantile(&times, share);
         let (median, low, high) = (at(0.5)?, at(0.25)?, at(0.75)?);
         Some(Timing {
             median,

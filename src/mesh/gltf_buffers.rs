@@ -14,7 +14,7 @@ use gltf::buffer::View;
 use gltf::{Accessor, Document};
 
 use super::error::{Fault, excerpt};
-use super::limits::{check_points, read_companion};
+use super::limits::{check, check_points, read_companion};
 use crate::files::{stays_inside, with_separators};
 
 /// Padding is optional, because exporters differ.
@@ -62,11 +62,7 @@ impl<'a> Buffers<'a> {
                     }
                 }),
             };
-            if total > MAX_BYTES {
-                let what = "bytes in its buffers";
-                let limit = MAX_BYTES;
-                return Err(Fault::TooMany { what, limit });
-            }
+            check("bytes in its buffers", total, MAX_BYTES)?;
             loaded.push(bytes);
         }
         let mut extensions = document.extensions_used();

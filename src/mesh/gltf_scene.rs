@@ -14,8 +14,9 @@ use gltf::{Document, Glb, Material, Node, Semantic};
 use super::error::Fault;
 use super::gltf_buffers::Buffers;
 use super::gltf_skin::Placement;
-use super::limits::{check_faces, check_groups, check_points};
+use super::limits::{check, check_faces, check_groups, check_points};
 use super::part::{MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TRANSPARENT, Part, PartColors};
+use super::polygon::{fan, strip};
 use super::triangles::Triangles;
 
 /// Most objects and lists in the JSON: each can cost hundreds of bytes of memory.
@@ -155,10 +156,7 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, Fault> {
 /// Parses and validates the JSON; also returns whether the file has animations.
 fn document_of(json: &[u8]) -> Result<(Document, bool), Fault> {
     let objects = json.iter().filter(|&&byte| byte == b'{' || byte == b'[');
-    if objects.count() > MAX_OBJECTS {
-        let (what, limit) = ("objects and lists", MAX_OBJECTS);
-        return Err(Fault::TooMany { what, limit });
-    }
+    check("objects and lists", objects.count(), MAX_OBJECTS)?;
     let (mut root, has_animations) = root_of(json)?;
     root.animations.clear();
     // Required extensions for materials, lights or images do not prevent reading the triangles.
@@ -368,21 +366,8 @@ impl Walk<'_> {
 
 fn triangles_of(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
-        Mode::TriangleStrip => {
-            let strip = corners.array_windows().enumerate();
-            let wound = |(number, &[a, b, c]): (usize, &[u32; 3])| match number % 2 {
-                0 => [a, b, c],
-                _ => [b, a, c],
-            };
-            strip.map(wound).collect()
-        }
-        Mode::TriangleFan => match corners {
-            [first, rest @ ..] => rest
-                .windows(2)
-                .map(|pair| [*first, pair[0], pair[1]])
-                .collect(),
-            [] => Vec::new(),
-        },
+        Mode::TriangleStrip => strip(corners).collect(),
+        Mode::TriangleFan => fan(corners).collect(),
         _ => corners.as_chunks().0.to_vec(),
     }
 }

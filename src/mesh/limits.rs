@@ -30,7 +30,8 @@ pub(super) fn check_groups(count: usize) -> Result<(), Fault> {
     check("groups", count, MAX_GROUPS)
 }
 
-fn check(what: &'static str, count: usize, limit: usize) -> Result<(), Fault> {
+/// Fails if there are more of `what`, in the plural, than the limit.
+pub(super) fn check(what: &'static str, count: usize, limit: usize) -> Result<(), Fault> {
     if count > limit {
         return Err(Fault::TooMany { what, limit });
     }

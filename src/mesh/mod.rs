@@ -44,7 +44,7 @@ use crate::files::{Marks, file_marks, has_ending};
 
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
-pub use solids::{SOLIDS, Solid, icosphere};
+pub use solids::{SOLIDS, Solid, globe, icosphere};
 pub use triangles::{MAX_ABS_COORDINATE, Triangles, are_closed, position_key};
 
 /// File format of a mesh.
@@ -134,12 +134,9 @@ pub fn read_ply(bytes: &[u8]) -> Result<Triangles, MeshError> {
 /// # Errors
 /// [`MeshError`] with the file, the place in it and what is wrong.
 pub fn read_triangles(path: &Path) -> Result<Triangles, MeshError> {
-    let mut file = read_mesh_file(path)?;
-    match file.parts.as_mut_slice() {
-        [only] => Ok(std::mem::take(&mut only.triangles)),
-        several => Triangles::join(several.iter().map(|part| &part.triangles))
-            .map_err(|fault| fault.with_path(path)),
-    }
+    let parts = read_mesh_file(path)?.parts.into_iter();
+    let triangles = parts.map(|part| part.triangles).collect();
+    Triangles::join(triangles).map_err(|fault| fault.with_path(path))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::mtl::{Libraries, colors_of};
 use super::obj_fault::find_fault;
 use super::obj_lines::ObjLines;
 use super::part::{MeshFile, NOTE_POINT_COLORS, Part};
-use super::polygon::{mend_fan, note_of_uncut};
+use super::polygon::{fan, mend_fan, note_of_uncut};
 use super::text::text_of;
 use super::triangles::Triangles;
 
@@ -58,12 +58,9 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
         };
         let material = material.and_then(|id| materials.get(id));
         let triangles = models.iter().map(|model| triangles_of(model, &mut uncut));
-        let triangles: Result<Vec<_>, _> = triangles.collect();
-        let triangles = triangles.and_then(|pieces| match <[_; 1]>::try_from(pieces) {
-            Ok([only]) => Ok(only),
-            Err(several) => Triangles::join(several.iter()),
-        });
         let triangles = triangles
+            .collect::<Result<Vec<_>, _>>()
+            .and_then(Triangles::join)
             .map_err(|_| find_fault(text, "a point has a coordinate that is out of range"))?;
         Ok(Part {
             name,
@@ -107,9 +104,7 @@ fn triangles_of(model: &Model, uncut: &mut usize) -> Result<Triangles, Fault> {
         let (polygon, rest) = corners.split_at(count as usize);
         corners = rest;
         let start = faces.len();
-        if let [first, others @ ..] = polygon {
-            faces.extend(others.windows(2).map(|pair| [*first, pair[0], pair[1]]));
-        }
+        faces.extend(fan(polygon));
         let is_uncut = mend_fan(&mut faces[start..], |corner| point(corner as usize));
         *uncut += usize::from(is_uncut);
     }

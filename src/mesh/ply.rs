@@ -12,7 +12,7 @@ use super::error::Fault;
 use super::limits::{check_faces, check_points};
 use super::part::{MeshFile, NOTE_POINT_COLORS};
 use super::ply_element::{Element, is_corners, least_bytes};
-use super::polygon::{mend_fan, note_of_uncut};
+use super::polygon::{fan, mend_fan, note_of_uncut, strip};
 use super::triangles::{Triangles, out_of_range};
 
 /// Longest header in bytes, so that gigabytes are not searched for a missing end.
@@ -164,16 +164,15 @@ impl Body<'_> {
         }
         for number in 1..=element.count {
             let read = match self.encoding {
-                Encoding::Ascii => self.next_line(number, element)?,
+                Encoding::Ascii => Ok(self.next_line(number, element)?),
                 Encoding::BinaryLittleEndian => self
                     .parser
-                    .read_little_endian_element(&mut self.rest, element)
-                    .map_err(|error| body_fault(&error, number, element))?,
-                Encoding::BinaryBigEndian => self
-                    .parser
-                    .read_big_endian_element(&mut self.rest, element)
-                    .map_err(|error| body_fault(&error, number, element))?,
+                    .read_little_endian_element(&mut self.rest, element),
+                Encoding::BinaryBigEndian => {
+                    self.parser.read_big_endian_element(&mut self.rest, element)
+                }
             };
+            let read = read.map_err(|error| body_fault(&error, number, element))?;
             on_element(number, read).map_err(|fault| match fault {
                 Fault::Refused { why, .. } if self.encoding == Encoding::Ascii => {
                     Fault::in_line(self.line - 1, why)
@@ -260,28 +259,20 @@ fn add_fan(
             .filter(|&index| (index as usize) < vertices)
             .ok_or_else(|| out_of_range(number, corner, vertices))
     };
-    let [first, rest @ ..] = corners else {
-        return Ok(());
-    };
-    check_faces(faces.len() + rest.len().saturating_sub(1))?;
-    for pair in rest.windows(2) {
-        faces.push([index(*first)?, index(pair[0])?, index(pair[1])?]);
+    check_faces(faces.len() + corners.len().saturating_sub(2))?;
+    for [a, b, c] in fan(corners) {
+        faces.push([index(a)?, index(b)?, index(c)?]);
     }
     Ok(())
 }
 
-/// Adds triangle strips, which are separated by -1: every other triangle of a strip is turned over.
+/// Adds triangle strips, which are separated by -1.
 fn add_strips(
     faces: &mut Vec<[u32; 3]>,
     number: usize,
     corners: &[i64],
     vertices: usize,
 ) -> Result<(), Fault> {
-    for strip in corners.split(|&corner| corner == -1) {
-        for (index, &[a, b, c]) in strip.array_windows().enumerate() {
-            let corners = if index % 2 == 0 { [a, b, c] } else { [b, a, c] };
-            add_fan(faces, number, &corners, vertices)?;
-        }
-    }
-    Ok(())
+    let mut strips = corners.split(|&corner| corner == -1).flat_map(strip);
+    strips.try_for_each(|corners| add_fan(faces, number, &corners, vertices))
 }

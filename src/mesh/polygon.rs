@@ -10,6 +10,18 @@ const MOST_CORNERS: usize = 4096;
 /// allow for rounding.
 const MAX_STRAIGHT_AREA: f64 = 1e-12;
 
+/// The triangles of a fan: a polygon's first corner and each two consecutive others.
+pub(super) fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
+    let pairs = corners.get(1..).unwrap_or_default().array_windows();
+    pairs.map(move |&[b, c]| [corners[0], b, c])
+}
+
+/// The triangles of a strip: each three consecutive corners, every other triangle turned over.
+pub(super) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
+    let triples = corners.array_windows().enumerate();
+    triples.map(|(index, &[a, b, c])| if index % 2 == 0 { [a, b, c] } else { [b, a, c] })
+}
+
 /// Replaces a fan around a polygon's first corner that leaves the outline, as in a concave polygon, by ear clipping
 /// (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). Keeps the fan if there is no ear because
 /// the polygon crosses itself, or if it has more than 4096 corners; returns `true` in the latter case.

@@ -1,7 +1,7 @@
 //! Generated solids: closed, centred on the origin, wound clockwise seen from outside.
 
 use std::collections::HashMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
@@ -152,6 +152,41 @@ fn faces_between(rings: &[Vec<u32>]) -> Vec<[u32; 3]> {
     faces
 }
 
+/// A globe of 4 · `rings` · (`rings` − 1) triangles around the origin, with its poles on the y axis and a radius for
+/// each polar angle and azimuth, in radians.
+pub fn globe(rings: u32, radius: impl Fn(f64, f64) -> f64) -> Triangles {
+    let columns = 2 * rings;
+    let point_at = |ring: u32, column: u32| {
+        let polar = f64::from(ring) / f64::from(rings) * PI;
+        let azimuth = f64::from(column) / f64::from(columns) * TAU;
+        let (x, z) = (azimuth.cos() * polar.sin(), azimuth.sin() * polar.sin());
+        DVec3::new(x, polar.cos(), z) * radius(polar, azimuth)
+    };
+    let mut points = vec![point_at(0, 0), point_at(rings, 0)];
+    for ring in 1..rings {
+        points.extend((0..columns).map(|column| point_at(ring, column)));
+    }
+    let number = |ring: u32, column: u32| match ring {
+        0 => 0,
+        _ if ring == rings => 1,
+        _ => 2 + (ring - 1) * columns + column % columns,
+    };
+    let mut faces = Vec::new();
+    for ring in 0..rings {
+        for column in 0..columns {
+            let (a, b) = (number(ring, column), number(ring, column + 1));
+            let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
+            if ring > 0 {
+                faces.push([a, c, b]);
+            }
+            if ring + 1 < rings {
+                faces.push([a, d, c]);
+            }
+        }
+    }
+    Triangles::of(points, faces)
+}
+
 /// A sphere of 320 triangles around the origin: a subdivided icosahedron.
 pub fn icosphere(radius: f64) -> Triangles {
     let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
@@ -212,24 +247,14 @@ fn nearest_triples(points: &[DVec3]) -> Vec<[u32; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
-
     use super::*;
+    use crate::mesh::are_closed;
 
     #[test]
     fn solids_are_closed_and_look_outwards() {
         for Solid { name, make, smooth } in SOLIDS {
             let solid = make(2.0);
-            let mut edges = HashSet::new();
-            for &[a, b, c] in solid.faces() {
-                for edge in [(a, b), (b, c), (c, a)] {
-                    assert!(edges.insert(edge), "{name}: an edge is passed twice");
-                }
-            }
-            assert!(
-                edges.iter().all(|&(a, b)| edges.contains(&(b, a))),
-                "{name} is open"
-            );
+            assert!(are_closed(solid.corners()), "{name} is open");
             let volume: f64 = solid
                 .corners()
                 .map(|[a, b, c]| a.dot(c.cross(b)) / 6.0)

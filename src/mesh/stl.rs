@@ -41,18 +41,15 @@ pub(super) fn read(mut bytes: Vec<u8>, stem: &str) -> Result<MeshFile, Fault> {
     let points = points.unwrap_or_default();
     check_points(points.len())?;
     let has_full_precision = vertices.len() == points.len();
-    let triangles = Triangles::weld(
-        points.len(),
-        |index| {
-            let rounded = || DVec3::from_array(points[index].map(f64::from));
-            if has_full_precision {
-                vertices[index]
-            } else {
-                rounded()
-            }
-        },
-        (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]),
-    )?;
+    let point = |index: usize| {
+        if has_full_precision {
+            vertices[index]
+        } else {
+            DVec3::from_array(points[index].map(f64::from))
+        }
+    };
+    let faces = (0..points.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]);
+    let triangles = Triangles::weld(points.len(), point, faces)?;
     let name = name.unwrap_or_else(|| stem.to_owned());
     let mut file = MeshFile::of_one(name, triangles);
     file.notes.extend(note);

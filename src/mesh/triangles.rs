@@ -159,8 +159,12 @@ impl Triangles {
         Ok(Self::of(points, faces))
     }
 
-    /// Merges several meshes into one.
-    pub(super) fn join<'a>(parts: impl Iterator<Item = &'a Self>) -> Result<Self, Fault> {
+    /// Merges meshes into one; a single one stays as it is.
+    pub(super) fn join(parts: Vec<Self>) -> Result<Self, Fault> {
+        let parts = match <[_; 1]>::try_from(parts) {
+            Ok([only]) => return Ok(only),
+            Err(parts) => parts,
+        };
         let (mut points, mut faces) = (Vec::new(), Vec::new());
         for part in parts {
             let first = points.len() as u32;
@@ -307,7 +311,7 @@ mod tests {
         let triangles = weld(&points, &faces).expect("a mesh");
         assert_eq!(triangles.points(), [DVec3::ZERO, DVec3::X, DVec3::Y]);
         assert_eq!(triangles.faces(), [[0, 2, 1], [2, 0, 1]]);
-        let again = Triangles::join([&triangles, &triangles].into_iter()).expect("a mesh");
+        let again = Triangles::join(vec![triangles.clone(); 2]).expect("a mesh");
         assert_eq!(again, triangles);
     }
 

@@ -40,37 +40,40 @@ struct Quality {
 /// dB, where 59 are required.
 const TRUTH: [u32; 2] = [31, 33];
 
-/// The reference for a picture of this size: without jagged edges and in double precision.
-fn truth_of(scene: &Scene, size: &RenderRequest) -> Vec<LinearRgb> {
-    let [first, second] = TRUTH.map(|side| {
+/// The reference for a square picture of this size: without jagged edges and in double precision.
+fn truth_of(scene: &Scene, side: u32) -> Vec<LinearRgb> {
+    let [first, second] = TRUTH.map(|samples| {
         let fine = RenderRequest {
-            sampling: Sampling::Grid(side),
+            sampling: Sampling::Grid(samples),
             precision: Precision::Double,
-            ..*size
+            ..RenderRequest::sized(side, side)
         };
         linear(scene, &fine).0
     });
     mean(&first, &second)
 }
 
-/// Measures the requested picture against the reference.
-fn quality(scene: &Scene, picture: &RenderRequest) -> Quality {
-    quality_against(&truth_of(scene, picture), scene, picture)
-}
-
-fn quality_against(truth: &[LinearRgb], scene: &Scene, picture: &RenderRequest) -> Quality {
-    let (got, rays) = linear(scene, picture);
-    let off = difference(&got, truth);
+/// Measures square pictures with these samplings and this many pixels per side against the reference.
+fn qualities<const N: usize>(scene: &Scene, side: u32, samplings: [Sampling; N]) -> [Quality; N] {
+    let truth = truth_of(scene, side);
     let is_visible = |(got, truth): &(&LinearRgb, &LinearRgb)| {
         let mut channels = got.iter().zip(truth.iter());
         channels.any(|(got, truth)| f64::from(got - truth).abs() * 255.0 > INVISIBLE)
     };
-    Quality {
-        psnr: off.psnr(),
-        worst: off.max * 255.0,
-        visible: got.iter().zip(truth).filter(is_visible).count(),
-        rays: rays.camera as f64 / truth.len() as f64,
-    }
+    samplings.map(|sampling| {
+        let request = RenderRequest {
+            sampling,
+            ..RenderRequest::sized(side, side)
+        };
+        let (got, rays) = linear(scene, &request);
+        let off = difference(&got, &truth);
+        Quality {
+            psnr: off.psnr(),
+            worst: off.max * 255.0,
+            visible: got.iter().zip(&truth).filter(is_visible).count(),
+            rays: rays.camera as f64 / truth.len() as f64,
+        }
+    })
 }
 
 /// Best PSNR possible with 8 bits, due to rounding, in dB.
@@ -87,24 +90,19 @@ fn picture(sampling: Sampling) -> RenderRequest {
 
 /// The quality of a square picture with clean edges and this many pixels per side.
 fn quality_of_clean_edges(scene: &Scene, side: u32) -> Quality {
-    let request = RenderRequest {
-        sampling: Sampling::ADAPTIVE,
-        ..RenderRequest::sized(side, side)
-    };
-    quality(scene, &request)
+    let [clean] = qualities(scene, side, [Sampling::ADAPTIVE]);
+    clean
 }
 
 #[test]
 fn the_demo_has_clean_edges_for_few_rays() {
     for scene in random::published() {
-        let truth = truth_of(&scene, &picture(Sampling::Centres));
-        let of = |sampling| quality_against(&truth, &scene, &picture(sampling));
-        let got = of(Sampling::ADAPTIVE);
+        let samplings = [Sampling::ADAPTIVE, Sampling::Centres];
+        let [got, jagged] = qualities(&scene, SIDE, samplings);
         assert!(
             got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE && got.rays <= 2.5,
             "{got:?}"
         );
-        let jagged = of(Sampling::Centres);
         assert!(
             jagged.psnr < EIGHT_BITS && jagged.worst > INVISIBLE,
             "the measure has no power: {jagged:?}"
@@ -161,7 +159,7 @@ fn poles() -> Scene {
 
 #[test]
 fn what_is_narrower_than_a_pixel_does_not_slip_through() {
-    let got = quality(&poles(), &picture(Sampling::ADAPTIVE));
+    let got = quality_of_clean_edges(&poles(), SIDE);
     assert!(
         got.psnr >= EIGHT_BITS && got.visible <= 4 && got.worst <= 2.0 * INVISIBLE,
         "{got:?}"
@@ -200,7 +198,7 @@ fn rays_of_a_sun() -> Scene {
 
 #[test]
 fn tips_of_triangles_do_not_slip_through() {
-    let got = quality(&rays_of_a_sun(), &picture(Sampling::ADAPTIVE));
+    let got = quality_of_clean_edges(&rays_of_a_sun(), SIDE);
     assert!(
         got.psnr >= EIGHT_BITS
             && got.visible <= 4
@@ -212,7 +210,7 @@ fn tips_of_triangles_do_not_slip_through() {
 
 #[test]
 fn tips_do_not_slip_through_in_shadows_and_mirrors_either() {
-    let got = quality(&random::shards(), &picture(Sampling::ADAPTIVE));
+    let got = quality_of_clean_edges(&random::shards(), SIDE);
     assert!(
         got.psnr >= EIGHT_BITS && got.visible <= 4 && got.worst <= 2.0 * INVISIBLE,
         "{got:?}"
@@ -275,10 +273,8 @@ fn lacquer() -> Scene {
 
 #[test]
 fn thin_shadows_are_seen_in_a_highlight_on_black() {
-    let (scene, size) = (lacquer(), RenderRequest::sized(128, 128));
-    let truth = truth_of(&scene, &size);
-    let at = |sampling| quality_against(&truth, &scene, &RenderRequest { sampling, ..size });
-    let (got, grid) = (at(Sampling::ADAPTIVE), at(Sampling::Grid(4)));
+    let samplings = [Sampling::ADAPTIVE, Sampling::Grid(4)];
+    let [got, grid] = qualities(&lacquer(), 128, samplings);
     assert!(
         got.psnr >= grid.psnr && 4 * got.visible <= grid.visible && 50 < grid.visible,
         "{got:?} {grid:?}"
@@ -396,10 +392,8 @@ fn cloud() -> Scene {
 
 #[test]
 fn many_small_things_of_one_kind_are_as_clean_as_a_grid_shows_them() {
-    let (scene, size) = (cloud(), RenderRequest::sized(48, 48));
-    let truth = truth_of(&scene, &size);
-    let at = |sampling| quality_against(&truth, &scene, &RenderRequest { sampling, ..size });
-    let (got, grid) = (at(Sampling::ADAPTIVE), at(Sampling::Grid(16)));
+    let samplings = [Sampling::ADAPTIVE, Sampling::Grid(16)];
+    let [got, grid] = qualities(&cloud(), 48, samplings);
     assert!(
         got.visible == 0 && got.psnr >= grid.psnr - 2.0,
         "{got:?} {grid:?}"
@@ -433,15 +427,12 @@ fn coins() -> Scene {
 
 #[test]
 fn the_rims_of_discs_are_clean() {
-    let scene = coins();
-    let truth = truth_of(&scene, &picture(Sampling::Centres));
-    let of = |sampling| quality_against(&truth, &scene, &picture(sampling));
-    let got = of(Sampling::ADAPTIVE);
+    let samplings = [Sampling::ADAPTIVE, Sampling::Centres];
+    let [got, jagged] = qualities(&coins(), SIDE, samplings);
     assert!(
         got.psnr >= EIGHT_BITS && got.visible <= 4 && got.worst <= 2.0 * INVISIBLE,
         "{got:?}"
     );
-    let jagged = of(Sampling::Centres);
     assert!(
         jagged.psnr < EIGHT_BITS,
         "the measure has no power: {jagged:?}"
@@ -679,34 +670,21 @@ fn a_highlight_smaller_than_a_pixel_is_found() {
         light.intensity = 1.0;
         light.marker = None;
     }
-    let got = quality(&scene, &picture(Sampling::ADAPTIVE));
+    let got = quality_of_clean_edges(&scene, SIDE);
     assert!(got.psnr >= EIGHT_BITS && got.worst <= INVISIBLE, "{got:?}");
 }
 
 #[test]
 fn a_grid_is_the_mean_of_its_samples() {
     let scene = Scene::demo();
-    let wide = |scene: &Scene, side| {
-        linear(
-            scene,
-            &RenderRequest {
-                sampling: Sampling::Grid(1),
-                ..RenderRequest::sized(side, side)
-            },
-        )
-        .0
+    let grid = |samples, side| {
+        let request = RenderRequest {
+            sampling: Sampling::Grid(samples),
+            ..RenderRequest::sized(side, side)
+        };
+        linear(&scene, &request).0
     };
-    let (fine, coarse) = (
-        wide(&scene, 96),
-        linear(
-            &scene,
-            &RenderRequest {
-                sampling: Sampling::Grid(2),
-                ..RenderRequest::sized(48, 48)
-            },
-        )
-        .0,
-    );
+    let (fine, coarse) = (grid(1, 96), grid(2, 48));
     for (index, pixel) in coarse.iter().enumerate() {
         let (x, y) = (index % 48 * 2, index / 48 * 2);
         for channel in 0..3 {
@@ -811,7 +789,7 @@ fn boards(is_mesh: bool) -> Scene {
 #[test]
 fn gaps_between_things_of_one_colour_are_seen() {
     for is_mesh in [true, false] {
-        let got = quality(&boards(is_mesh), &picture(Sampling::ADAPTIVE));
+        let got = quality_of_clean_edges(&boards(is_mesh), SIDE);
         assert!(
             got.psnr >= EIGHT_BITS && got.visible == 0 && got.rays < 3.0,
             "{is_mesh} {got:?}"
@@ -848,7 +826,7 @@ fn squares() -> Scene {
 
 #[test]
 fn squares_of_one_colour_that_touch_at_corners_do_not_hide_what_is_between_them() {
-    let got = quality(&squares(), &picture(Sampling::ADAPTIVE));
+    let got = quality_of_clean_edges(&squares(), SIDE);
     assert!(got.psnr >= EIGHT_BITS && got.visible <= 4, "{got:?}");
 }
 

@@ -1,10 +1,12 @@
 //! The views that show other quantities than light, compared with their expected values.
 
 use glam::DVec3;
-use glint::image::{Image, LinearImage, render, render_light_into};
+use glint::image::{LinearImage, render_light_into};
 use glint::plan::{Planner, Region, RenderRequest};
 use glint::scene::{Accelerator, Aspect, Light, Object, Precision, Sampling, Scene, Sphere};
 use glint::trace::RenderControl;
+
+use crate::pictures::picture;
 
 fn light_of(scene: &Scene, request: &RenderRequest) -> LinearImage {
     let shown = request.aspect.of(scene);
@@ -155,13 +157,7 @@ fn a_part_has_the_same_pixels_as_the_whole_and_nothing_else() {
             }),
             ..whole
         };
-        let picture = |request: &RenderRequest| -> Image {
-            let control = RenderControl::default();
-            render(&scene, request, &control)
-                .expect("nobody stops it")
-                .0
-        };
-        let (whole, part) = (picture(&whole), picture(&part));
+        let [whole, part] = [whole, part].map(|request| picture(&scene, &request).0);
         let mut traced = 0;
         for (n, (part, whole)) in part.pixels.iter().zip(&whole.pixels).enumerate() {
             let (column, row) = (n % 200, n / 200);

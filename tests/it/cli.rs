@@ -1,7 +1,9 @@
 //! The command line, through the real binary.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
+
+use crate::program::{self, run, stderr_of};
 
 const DEMO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/demo.ron");
 const BAD: &str = concat!(
@@ -10,14 +12,11 @@ const BAD: &str = concat!(
 );
 
 fn glint(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(words)
-        .current_dir(folder)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .expect("the program starts")
+    let mut command = program::glint(words);
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    run(command.current_dir(folder))
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -379,7 +378,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
     ];
     let run = glint(folder.path(), &words);
     assert!(run.status.success(), "{run:?}");
-    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let said = text(&run.stdout);
     assert!(
         said.contains("the original program") && said.contains("16×16; reference: f64"),
         "{said}"
@@ -430,9 +429,7 @@ fn chart_prints_the_front_and_writes_every_figure() {
         folder.path(),
         &["chart", DEMO, "--side", "8", "--budget", "0.0000001"],
     );
-    assert!(
-        String::from_utf8_lossy(&run.stdout).contains("no measured method is within that limit")
-    );
+    assert!(text(&run.stdout).contains("no measured method is within that limit"));
 }
 
 #[test]
@@ -460,7 +457,7 @@ fn stability_tells_the_robust_from_the_rest() {
         &["stability", "--csv", "s.csv", "--png", "s.png"],
     );
     assert!(run.status.success(), "{run:?}");
-    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let said = text(&run.stdout);
     for line in said
         .lines()
         .filter(|line| line.starts_with("* ") && line.contains('%'))
@@ -494,11 +491,8 @@ fn stability_tells_the_robust_from_the_rest() {
 #[test]
 fn desktops_and_shells_are_told_of_the_program() {
     let folder = folder();
-    let run = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .arg("--install-desktop")
-        .env("XDG_DATA_HOME", folder.path())
-        .output()
-        .expect("it runs");
+    let mut install = program::glint(&["--install-desktop"]);
+    let run = run(install.env("XDG_DATA_HOME", folder.path()));
     assert!(run.status.success(), "{}", text(&run.stderr));
     for path in text(&run.stdout).lines() {
         assert!(Path::new(path).starts_with(folder.path()) && Path::new(path).is_file());
@@ -529,13 +523,8 @@ fn results_that_cannot_be_written_are_a_failure() {
         &["--help"],
         &["--version"],
     ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args(words)
-            .stdout(full.try_clone().expect("a second one"))
-            .output()
-            .expect("the program starts");
-        assert_eq!(output.status.code(), Some(1), "{words:?}");
-        let said = text(&output.stderr);
+        let mut command = program::glint(words);
+        let said = stderr_of(command.stdout(full.try_clone().expect("a second one")), 1);
         assert!(said.contains("could not be written to stdout"), "{said}");
     }
 }

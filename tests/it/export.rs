@@ -12,9 +12,10 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
-use glint::export::{ExportError, ExportStep, Exporting};
-use glint::export::{Frames, Pattern, Sequence, Video, VideoError};
-use glint::image::{Format, render};
+use glint::export::{
+    ExportError, ExportStep, Exporting, Frames, Pattern, Sequence, Video, VideoError,
+};
+use glint::image::Format;
 use glint::plan::RenderRequest;
 use glint::scene::{Document, Sampling, Scene};
 use glint::trace::{RenderControl, Threads};
@@ -23,52 +24,44 @@ use glint::worker::Worker;
 use image::AnimationDecoder as _;
 
 use crate::harness::{CTRL, EditorHarness};
-use crate::program::{FLIGHT, done, glint, names, run, wait_until};
+use crate::pictures::picture;
+use crate::program::{FLIGHT, done, glint, names, run, stderr_of, wait_until};
+use crate::random::flight;
 
 /// Exports small frames of the published flight into a folder.
 fn export(folder: &Path, more: &[&str]) -> Command {
-    let folder = folder.to_str().expect("a plain name");
-    let mut command = glint(&[
-        "export",
-        FLIGHT,
-        "-o",
-        folder,
-        "--width",
-        "48",
-        "--threads",
-        "2",
-    ]);
-    command.args(more);
+    let mut command = glint(&["export", FLIGHT, "--width", "48", "--threads", "2"]);
+    command.arg("-o").arg(folder).args(more);
     command
-}
-
-/// What a successful command writes to stderr.
-fn warned(command: &mut Command) -> String {
-    let output = run(command);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{said}");
-    said
 }
 
 /// The files of a folder except the notes, which contain times.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let entries = entries.map(|entry| entry.expect("an entry").path());
-    let entries = entries.filter(|path| path.is_file());
-    let files = entries.filter(|path| {
-        path.file_name()
-            .is_some_and(|name| name != "glint-frames.txt")
-    });
+    let names = names(folder)
+        .into_iter()
+        .filter(|name| name != "glint-frames.txt");
+    let files = names.filter(|name| folder.join(name).is_file());
     files
-        .map(|path| {
-            let name = path
-                .file_name()
-                .expect("a name")
-                .to_string_lossy()
-                .into_owned();
-            (name, fs::read(&path).expect("readable"))
+        .map(|name| {
+            let bytes = fs::read(folder.join(&name)).expect("readable");
+            (name, bytes)
         })
         .collect()
+}
+
+/// The published flight in pictures of this size.
+fn sized_flight(width: u32, height: u32) -> Scene {
+    let mut scene = flight();
+    (scene.render.width, scene.render.height) = (width, height);
+    scene
+}
+
+/// Frames of a scene, all of them if none are given, that are to be in a folder.
+fn sequence(scene: Scene, frames: Option<&str>, format: Format, folder: &Path) -> Sequence {
+    let frames = frames.map(|frames| Frames::parse(frames).expect("frames"));
+    let (pattern, folder) = (Pattern::default(), folder.to_owned());
+    let sequence = Sequence::new(Arc::new(scene), frames, pattern, format, folder);
+    sequence.expect("they are there")
 }
 
 #[test]
@@ -243,8 +236,7 @@ fn notes_that_are_a_link_to_nowhere_are_told_before_the_first_frame() {
     let folder = tempfile::tempdir().expect("a folder");
     let notes = folder.path().join("glint-frames.txt");
     std::os::unix::fs::symlink("gone", &notes).expect("linked");
-    let output = run(&mut export(folder.path(), &["--frames", "1"]));
-    let said = String::from_utf8_lossy(&output.stderr);
+    let said = stderr_of(&mut export(folder.path(), &["--frames", "1"]), 1);
     assert!(
         said.contains("glint-frames.txt: it is a broken link"),
         "{said}"
@@ -298,12 +290,9 @@ fn a_video_that_cannot_be_is_told_before_the_first_frame() {
         folder.path().join("gone/x.gif"),
     );
     let video = video.to_str().expect("a plain name");
-    let output = run(&mut export(&frames, &["--frames", "1-3", "--video", video]));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        !output.status.success() && said.contains("gone does not exist"),
-        "{said}"
-    );
+    let words = ["--frames", "1-3", "--video", video];
+    let said = stderr_of(&mut export(&frames, &words), 1);
+    assert!(said.contains("gone does not exist"), "{said}");
     assert!(!frames.exists());
     let inside = frames.join("x.gif");
     let inside = inside.to_str().expect("a plain name");
@@ -322,14 +311,10 @@ fn at_rate(folder: &Path, fps: &str, size: (u32, u32), words: &[&str]) -> Comman
     assert!(text.contains(&rate));
     let scene = folder.join("rated.ron");
     fs::write(&scene, text).expect("written");
-    let frames = folder.join("frames");
-    let (scene, frames) = (
-        scene.to_str().expect("plain"),
-        frames.to_str().expect("plain"),
-    );
-    let mut command = glint(&["export", scene, "-o", frames]);
+    let mut command = glint(&["export", "-o"]);
     let (width, height) = (size.0.to_string(), size.1.to_string());
     command
+        .args([folder.join("frames"), scene])
         .args(["--width", &width, "--height", &height])
         .args(words);
     command
@@ -341,9 +326,7 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
     let video = |name: &str| folder.path().join(name).to_str().expect("plain").to_owned();
     for name in ["a.mp4", "a.mkv"] {
         let words = ["--frames", "1", "--video", &video(name)];
-        let output = run(&mut at_rate(folder.path(), "14", (1, 8), &words));
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        let said = stderr_of(&mut at_rate(folder.path(), "14", (1, 8), &words), 2);
         assert!(said.contains("at least 2 × 2 pixels"), "{said}");
         assert!(!folder.path().join("frames").exists());
     }
@@ -355,7 +338,7 @@ fn what_no_video_can_show_is_told_and_what_it_shows_otherwise_as_well() {
     ] {
         let gif = video("fast.gif");
         let words = ["--frames", frames, "--video", &gif];
-        let said = warned(&mut at_rate(folder.path(), fps, (8, 8), &words));
+        let said = stderr_of(&mut at_rate(folder.path(), fps, (8, 8), &words), 0);
         assert!(
             said.contains(told) && told.is_empty() != said.contains("are left out"),
             "{said}"
@@ -373,17 +356,10 @@ fn after_an_edit_only_the_frames_that_change_are_made_again() {
     let mut again = |scene: &Scene| {
         document.scene = scene.clone();
         fs::write(&file, document.to_text().expect("a text")).expect("written");
-        let words = [
-            "export",
-            file.to_str().expect("a plain name"),
-            "-o",
-            frames.to_str().expect("a plain name"),
-            "--width",
-            "24",
-        ];
-        done(&mut glint(&words))
+        let mut export = glint(&["export", "--width", "24", "-o"]);
+        done(export.args([&frames, &file]))
     };
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
+    let mut scene = flight();
     assert!(again(&scene).contains("202 frames written"));
     // The last key is moved: frames before its neighbour stay.
     let last = scene.animation.keys.len() - 1;
@@ -412,9 +388,7 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     // A folder has the name of a frame.
     let obstacle = frames.join("rayTrace7.ppm");
     fs::create_dir_all(&obstacle).expect("made");
-    let output = run(&mut export(&frames, &["--frames", "1-12"]));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    let said = stderr_of(&mut export(&frames, &["--frames", "1-12"]), 1);
     assert!(
         said.contains("rayTrace7.ppm") && said.contains("resumes the export"),
         "{said}"
@@ -430,10 +404,9 @@ fn what_cannot_be_written_is_told_and_leaves_no_parts() {
     done(&mut export(&frames, &["--frames", "1-12"]));
     assert_eq!(files(&frames).len(), 12);
     // A file has the name of the folder.
-    let output = run(export(&obstacle, &[]).arg("--dry-run"));
-    assert_eq!(output.status.code(), Some(1));
+    let said = stderr_of(export(&obstacle, &[]).arg("--dry-run"), 1);
     // A dry run writes nothing, so the error is about reading.
-    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot read"));
+    assert!(said.contains("cannot read"), "{said}");
 }
 
 /// The system lets a program write only so many bytes, as a full disk does: half a frame.
@@ -447,9 +420,7 @@ fn a_full_disk_is_told_and_gone_on_from() {
     let mut limited = Command::new("sh");
     limited.args(["-c", "trap '' XFSZ; ulimit -f 3; exec \"$0\" \"$@\""]);
     limited.arg(whole.get_program()).args(whole.get_args());
-    let output = run(&mut limited);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    let said = stderr_of(&mut limited, 1);
     assert!(said.contains(".ppm: File too large"), "{said}");
     assert_eq!(files(&frames).len(), 4, "nothing half under a name");
     done(&mut export(&frames, &["--frames", "1-9"]));
@@ -458,11 +429,10 @@ fn a_full_disk_is_told_and_gone_on_from() {
 
 #[test]
 fn a_folder_that_vanishes_is_told() {
-    let scene = Arc::new(Document::load(FLIGHT.as_ref()).expect("a scene").scene);
     let folder = tempfile::tempdir().expect("a folder");
     let frames = folder.path().join("frames");
-    let sequence = Sequence::new(scene, None, Pattern::default(), Format::Ppm, frames.clone());
-    let mut exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+    let sequence = sequence(flight(), None, Format::Ppm, &frames);
+    let mut exporting = Exporting::new(sequence).expect("a folder");
     let control = RenderControl::default();
     assert!(matches!(exporting.step(&control), ExportStep::Going));
     fs::remove_dir_all(&frames).expect("removed");
@@ -483,15 +453,11 @@ fn a_folder_that_vanishes_is_told() {
 #[test]
 fn frames_that_another_export_has_replaced_are_told_before_anything_is_made_of_them() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-    (scene.render.width, scene.render.height) = (16, 16);
+    let scene = sized_flight(16, 16);
     let mut darker = scene.clone();
     darker.ambient_intensity *= 0.5;
     let begin = |scene: &Scene, frames: &str| {
-        let numbers = Some(Frames::parse(frames).expect("frames"));
-        let (pattern, format) = (Pattern::default(), Format::Ppm);
-        let (scene, place) = (Arc::new(scene.clone()), folder.path().to_owned());
-        let sequence = Sequence::new(scene, numbers, pattern, format, place).expect("frames");
+        let sequence = sequence(scene.clone(), Some(frames), Format::Ppm, folder.path());
         Exporting::new(sequence).expect("a folder")
     };
     let control = RenderControl::default();
@@ -520,18 +486,10 @@ fn frames_that_another_export_has_replaced_are_told_before_anything_is_made_of_t
 #[test]
 fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-    (scene.render.width, scene.render.height) = (8200, 2100);
+    let mut scene = sized_flight(8200, 2100);
     scene.render.antialias = Sampling::Grid(1);
-    let scene = Arc::new(scene);
-    let sequence = || {
-        let numbers = Some(Frames::parse("7").expect("a frame"));
-        let (pattern, format) = (Pattern::default(), Format::Ppm);
-        let place = folder.path().to_owned();
-        let sequence = Sequence::new(Arc::clone(&scene), numbers, pattern, format, place);
-        sequence.expect("a frame")
-    };
-    let begin = || Exporting::new(sequence()).expect("a folder");
+    let sequence = sequence(scene, Some("7"), Format::Ppm, folder.path());
+    let begin = || Exporting::new(sequence.clone()).expect("a folder");
     let mut exporting = begin().side_by_side();
     let control = RenderControl::default();
     control.stop();
@@ -547,9 +505,8 @@ fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
     let mut again = begin();
     while !matches!(again.step(&control), ExportStep::Done) {}
     assert_eq!(again.finish().expect("there").kept, 1, "its hash is noted");
-    let shown = sequence().shown(7);
-    let request = RenderRequest::still(&shown);
-    let (whole, _) = render(&shown, &request, &control).expect("not stopped");
+    let shown = sequence.shown(7);
+    let (whole, _) = picture(&shown, &RenderRequest::still(&shown));
     let mut expected = Cursor::new(Vec::new());
     let encoded = whole.encode(Format::Ppm, &mut expected);
     encoded.expect("encodes");
@@ -560,15 +517,10 @@ fn a_frame_too_large_for_the_memory_is_the_whole_picture() {
 #[test]
 fn frames_side_by_side_are_the_same_and_none_is_left_out() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-    (scene.render.width, scene.render.height) = (48, 48);
-    let scene = Arc::new(scene);
     let exported = |threads: usize, stops: bool| {
         let frames = folder.path().join(format!("{threads} {stops}"));
-        let numbers = Some(Frames::parse("1-30").expect("frames"));
-        let (pattern, format) = (Pattern::default(), Format::Png);
-        let sequence = Sequence::new(Arc::clone(&scene), numbers, pattern, format, frames.clone());
-        let exporting = Exporting::new(sequence.expect("frames")).expect("a folder");
+        let sequence = sequence(sized_flight(48, 48), Some("1-30"), Format::Png, &frames);
+        let exporting = Exporting::new(sequence).expect("a folder");
         let mut exporting = exporting.side_by_side();
         let threads = Threads::new(Some(threads)).expect("threads");
         threads.run(|| {
@@ -613,9 +565,7 @@ fn words_are_checked_before_anything_is_written() {
         (&["--format", "JPG"], "expected ppm, png or exr"),
         (&["--format", "PNG", "--name", "frame"], "the name needs %d"),
     ] {
-        let output = run(&mut export(&frames, words));
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        let said = stderr_of(&mut export(&frames, words), 2);
         assert!(said.contains(expected), "{words:?}: {said}");
     }
     assert!(!frames.exists());
@@ -709,16 +659,15 @@ fn videos_without_ffmpeg_hold_every_frame() {
     }
     // Without ffmpeg, the error shows the exact command; with it, there is a video.
     let mp4 = video("flight.mp4");
-    let output = run(export(&frames, &["--frames", "1-9:2", "--video", &mp4]).env("PATH", ""));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1));
+    let words = ["--frames", "1-9:2", "--video", &mp4];
+    let said = stderr_of(export(&frames, &words).env("PATH", ""), 1);
     assert!(
         said.contains("ffmpeg -framerate 7") || said.contains("ffmpeg -f image2pipe"),
         "{said}"
     );
     // Of consecutive frames no more than requested, even where others exist in the folder.
-    let output = run(export(&frames, &["--frames", "3-5", "--video", &mp4]).env("PATH", ""));
-    let said = String::from_utf8_lossy(&output.stderr);
+    let few = ["--frames", "3-5", "--video", &mp4];
+    let said = stderr_of(export(&frames, &few).env("PATH", ""), 1);
     assert!(said.contains("-frames:v 3 "), "{said}");
     let left = names(folder.path());
     assert!(left.iter().all(|name| !name.contains("part")), "{left:?}");
@@ -769,15 +718,12 @@ fn ffmpeg_makes_videos_of_all_frames() {
         );
     }
     // Frames that were left out are not waited for.
-    let uneven = export(
-        &frames,
-        &["--frames", "1,5,6", "--video", &path("uneven.gif")],
-    );
-    let said = warned(&mut { uneven });
+    let uneven = ["--frames", "1,5,6", "--video", &path("uneven.gif")];
+    let said = stderr_of(&mut export(&frames, &uneven), 0);
     assert!(said.contains("not equally far apart"), "{said}");
     // H.264 requires even sides.
     let odd = ["--frames", "1-2", "--video", &path("odd.mp4")];
-    let said = warned(&mut at_rate(folder.path(), "14", (31, 17), &odd));
+    let said = stderr_of(&mut at_rate(folder.path(), "14", (31, 17), &odd), 0);
     assert!(said.contains("it shows 30 × 16 pixels"), "{said}");
     for name in ["stopped.mp4", "stopped.mov", "stopped.mkv"] {
         gives_up(&frames, name);
@@ -786,13 +732,10 @@ fn ffmpeg_makes_videos_of_all_frames() {
 
 /// Starts to make a video of existing frames, and cancels it.
 fn gives_up(frames: &Path, name: &str) {
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-    (scene.render.width, scene.render.height) = (48, 48);
-    let (shown, pattern) = (Frames::parse("1-9").ok(), Pattern::default());
-    let sequence = Sequence::new(scene.into(), shown, pattern, Format::Ppm, frames.into());
+    let sequence = sequence(sized_flight(48, 48), Some("1-9"), Format::Ppm, frames);
     let path = frames.join(name);
     let video = Video::of_path(&path).expect("known");
-    let made = video.make(&sequence.expect("they are there"), &path, |_| false);
+    let made = video.make(&sequence, &path, |_| false);
     assert!(matches!(made, Err(VideoError::Stopped)), "{name}: {made:?}");
     let left = files(frames).into_keys();
     let left: Vec<String> = left.filter(|name| !name.starts_with("rayTrace")).collect();
@@ -803,17 +746,12 @@ fn gives_up(frames: &Path, name: &str) {
 fn no_video_is_made_of_frames_that_another_export_has_put_there() {
     let folder = tempfile::tempdir().expect("a folder");
     done(&mut export(folder.path(), &["--frames", "1-9"]));
-    let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-    (scene.render.width, scene.render.height) = (48, 48);
-    let (shown, pattern) = (Frames::parse("1-9").ok(), Pattern::default());
-    let sequence = Sequence::new(
-        scene.into(),
-        shown,
-        pattern,
+    let sequence = sequence(
+        sized_flight(48, 48),
+        Some("1-9"),
         Format::Ppm,
-        folder.path().into(),
+        folder.path(),
     );
-    let sequence = sequence.expect("they are there");
     let path = folder.path().join("a.apng");
     let video = Video::of_path(&path).expect("known");
     let made = video.make(&sequence, &path, |count| {
@@ -865,9 +803,7 @@ fn what_ffmpeg_says_is_heard_and_what_it_does_not_write_takes_no_ones_place() {
         let words = ["--frames", "1-28", "--video", path];
         let mut command = at_rate(folder.path(), "14", (64, 64), &words);
         let search = format!("{}:{others}", folder.path().display());
-        let output = run(command.env("PATH", search));
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{script}");
+        let said = stderr_of(command.env("PATH", search), 1);
         assert!(said.contains(sentence), "{script}: {said}");
         assert_eq!(
             fs::read_to_string(&video).expect("there"),
@@ -886,9 +822,10 @@ fn what_may_only_be_read_is_not_replaced() {
     fs::write(&picture, "a photograph").expect("written");
     fs::set_permissions(&picture, fs::Permissions::from_mode(0o444)).expect("ours");
     let path = picture.to_str().expect("plain");
-    let output = run(&mut glint(&["render", FLIGHT, "--width", "8", "-o", path]));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    let said = stderr_of(
+        &mut glint(&["render", FLIGHT, "--width", "8", "-o", path]),
+        1,
+    );
     assert!(
         said.contains("kept.png") && said.contains("the file is read-only"),
         "{said}"
@@ -928,12 +865,7 @@ fn a_job_has_a_name_that_farms_take_whatever_the_scene_is_called() {
     ] {
         let scene = folder.path().join(format!("{name}.ron"));
         fs::copy(FLIGHT, &scene).expect("copied");
-        done(&mut glint(&[
-            "job",
-            scene.to_str().expect("plain"),
-            "-o",
-            path,
-        ]));
+        done(glint(&["job", "-o", path]).arg(scene));
         let text = fs::read_to_string(&template).expect("written");
         let line = format!("\nname: \"{expected}\"\n");
         assert!(text.contains(&line), "{text}");
@@ -955,20 +887,16 @@ fn see(harness: &mut EditorHarness, text: &str) {
 
 #[test]
 fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
-    let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(flight());
     let folder = harness.folder.path().join("frames");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     harness.type_name("folder", folder.to_str().expect("plain"));
     harness.type_name("frames", "1-40:3");
     harness.type_into("export width", "48");
     harness.type_into("export height", "48");
-    harness
-        .window
-        .get_by_label_contains("rayTrace1.ppm … rayTrace40.ppm");
+    harness.assert_says("rayTrace1.ppm … rayTrace40.ppm");
     see(&mut harness, "14 frames to make");
-    harness.window.get_by_label("gif").click();
-    harness.settle();
+    harness.click("gif");
     harness.click("Start export");
     // Edit the scene during the export.
     for frame in 0..20 {
@@ -991,11 +919,9 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
         made == files(&alone),
         "the same bytes, as the scene was at the start"
     );
-    harness.window.get_by_label_contains("14 frames in");
-    harness.window.get_by_label_contains("ppm + gif");
-    harness
-        .window
-        .get_by_label_contains("14 frames and frames.gif");
+    harness.assert_says("14 frames in");
+    harness.assert_says("ppm + gif");
+    harness.assert_says("14 frames and frames.gif");
     harness.click("Remove");
     // With the lights' markers hidden, the frames that showed one are different.
     see(&mut harness, "replace older files");
@@ -1011,15 +937,12 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     assert_eq!(rows.count(), 1);
     see(&mut harness, "all 14 frames already exist, then frames.gif");
     harness.type_name("frames", "nonsense");
-    harness
-        .window
-        .get_by_label_contains("expected frames such as");
+    harness.assert_says("expected frames such as");
 }
 
 #[test]
 fn an_export_that_failed_says_why_and_can_be_taken_up() {
-    let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(flight());
     let folder = harness.folder.path().join("frames");
     fs::write(&folder, "no folder").expect("written");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
@@ -1076,9 +999,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     see(&mut harness, "/202");
     harness.window.key_press_modifiers(CTRL, Key::Q);
     see(&mut harness, "Quit while exporting?");
-    harness
-        .window
-        .get_by_label_contains("Export animation can resume it next time");
+    harness.assert_says("Export animation can resume it next time");
     harness.window.get_by_label("Stay").click();
     harness.window.step();
     harness.window.step();
@@ -1111,16 +1032,11 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.window.get_by_label("Not finished");
     harness.click("Resume");
     finish(&mut harness);
-    harness.window.get_by_label_contains("202 frames in");
+    harness.assert_says("202 frames in");
     assert!(harness.window.query_by_label("Not finished").is_none());
     drop(harness);
-    let sequence = |size: u32| {
-        let mut scene = Document::load(FLIGHT.as_ref()).expect("a scene").scene;
-        (scene.render.width, scene.render.height) = (size, size);
-        let (pattern, folder) = (Pattern::default(), folder.clone());
-        Sequence::new(scene.into(), None, pattern, Format::Ppm, folder).expect("a sequence")
-    };
-    assert_eq!(sequence(512).missing().expect("readable").count(), 0);
+    let sequence = sequence(sized_flight(512, 512), None, Format::Ppm, &folder);
+    assert_eq!(sequence.missing().expect("readable").count(), 0);
     // It has ended, so it is not reported again.
     let harness = EditorHarness::kept_in(data.path(), FLIGHT.into());
     let told = harness.window.query_by_label_contains("interrupted");
@@ -1165,7 +1081,7 @@ fn the_window_writes_a_farm_job_and_its_scene() {
     let answer = |folder: &Path| vec![(Ask::ExportJob, Some(folder.join("job.yaml")))];
     let mut harness = EditorHarness::with(answer, None);
     harness.choose("File", "Export farm job…");
-    harness.window.get_by_label_contains("job.yaml and ");
+    harness.assert_says("job.yaml and ");
     let template = fs::read_to_string(harness.folder.path().join("job.yaml")).expect("written");
     assert!(template.contains("\"job.ron\"") && template.contains("\"1\""));
     let scene = Document::load(&harness.folder.path().join("job.ron"))
@@ -1179,7 +1095,7 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     let answer = |folder: &Path| vec![(Ask::ExportPovray, Some(folder.join("demo.pov")))];
     let mut harness = EditorHarness::with(answer, None);
     harness.choose("File", "Export for POV-Ray…");
-    harness.window.get_by_label_contains("Saved ");
+    harness.assert_says("Saved ");
     let by_window = fs::read_to_string(harness.folder.path().join("demo.pov")).expect("written");
     assert_eq!(by_window.matches("\ntriangle {").count(), 6);
     let folder = tempfile::tempdir().expect("a folder");
@@ -1193,30 +1109,16 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     let other = folder.path().join("demo.txt");
     fs::copy(demo, &other).expect("copied");
     fs::remove_file(to).expect("there");
-    done(&mut glint(&[
-        "convert",
-        other.to_str().expect("plain"),
-        "-o",
-        to,
-    ]));
+    done(glint(&["convert", "-o", to]).arg(other));
     assert_eq!(fs::read_to_string(to).expect("written"), by_window);
 }
 
 #[test]
 fn an_export_waits_goes_on_and_is_given_up() {
-    let scene = Arc::new(Document::load(FLIGHT.as_ref()).expect("a scene").scene);
     let folder = tempfile::tempdir().expect("a folder");
     let sequence = |name: &str, frames: &str| {
-        let frames = Frames::parse(frames).expect("a set");
         let folder = folder.path().join(name);
-        Sequence::new(
-            scene.clone(),
-            Some(frames),
-            Pattern::default(),
-            Format::Ppm,
-            folder,
-        )
-        .expect("a sequence")
+        sequence(flight(), Some(frames), Format::Ppm, &folder)
     };
     let worker = Worker::new(Some(2), || ()).expect("a render thread");
     let first = worker.export(sequence("first", "1-202")).expect("a folder");
@@ -1344,9 +1246,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     let scene = folder.path().join("s.ron");
     fs::copy(FLIGHT, &scene).expect("copied");
     let path = scene.to_str().expect("plain");
-    let output = run(&mut glint(&["job", path, "-o", path]));
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{said}");
+    let said = stderr_of(&mut glint(&["job", path, "-o", path]), 2);
     assert!(
         said.contains("is the scene") && said.contains("s.yaml"),
         "{said}"
@@ -1357,13 +1257,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     fs::create_dir_all(blocked.join("job.yaml")).expect("folders");
     fs::write(blocked.join("s.ron"), "mine").expect("written");
     let template = blocked.join("job.yaml");
-    let output = run(&mut glint(&[
-        "job",
-        path,
-        "-o",
-        template.to_str().expect("plain"),
-    ]));
-    assert_eq!(output.status.code(), Some(1));
+    stderr_of(glint(&["job", path, "-o"]).arg(template), 1);
     assert_eq!(names(&blocked), ["job.yaml", "s.ron"]);
     assert_eq!(
         fs::read_to_string(blocked.join("s.ron")).expect("there"),
@@ -1389,12 +1283,7 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     let template = inner.join("job.yaml");
     for text in ["one", "another"] {
         fs::write(inner.join("s.ron"), text).expect("written");
-        done(&mut glint(&[
-            "job",
-            path,
-            "-o",
-            template.to_str().expect("plain"),
-        ]));
+        done(glint(&["job", path, "-o"]).arg(&template));
     }
     let kept =
         ["s.ron.bak", "s.ron.bak2"].map(|name| fs::read_to_string(inner.join(name)).expect("kept"));
@@ -1403,14 +1292,8 @@ fn a_job_takes_no_ones_place_and_no_backup_that_of_another() {
     let mut long = Document::load(FLIGHT.as_ref()).expect("a scene");
     long.scene.animation_mut().frames_per_second = 240.0;
     long.save(&scene).expect("saved");
-    done(&mut glint(&[
-        "job",
-        path,
-        "-o",
-        template.to_str().expect("plain"),
-        "--frames",
-        "1-3000:3",
-    ]));
+    let mut job = glint(&["job", path, "--frames", "1-3000:3", "-o"]);
+    done(job.arg(&template));
     assert!(
         fs::read_to_string(&template)
             .expect("there")
@@ -1434,9 +1317,7 @@ fn no_frame_is_made_without_a_mesh_that_is_missing() {
         ["export", path, "-o", place, "--frames", "1"],
         ["render", path, "-o", place, "--frame", "1"],
     ] {
-        let output = run(glint(&words).args(["--width", "20"]));
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{said}");
+        let said = stderr_of(glint(&words).args(["--width", "20"]), 1);
         assert!(
             said.contains("knot.ply") && said.contains("no frame is made"),
             "{said}"
@@ -1467,17 +1348,14 @@ fn a_video_that_is_cut_off_takes_no_ones_place() {
     limited.args(["-c", "trap '' XFSZ; ulimit -f $0; exec \"$@\""]);
     limited.arg(((whole.len() - 1) / 1024).to_string());
     limited.arg(again.get_program()).args(again.get_args());
-    let output = run(&mut limited);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
+    let said = stderr_of(&mut limited, 1);
     assert!(said.contains("b.gif: File too large"), "{said}");
     assert_eq!(fs::read_to_string(&video).expect("there"), "older");
 }
 
 #[test]
 fn at_another_rate_all_frames_are_still_all() {
-    let text = fs::read_to_string(FLIGHT).expect("readable");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(flight());
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     see(&mut harness, "202 frames to make");
     harness.type_into("export frames per second", "28");

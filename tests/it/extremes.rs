@@ -8,38 +8,13 @@ use glint::mesh::SOLIDS;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Accelerator, Camera, ColorPack, Light, List, MAX_REFLECTIONS, MAX_SIDE, Mesh, Object, Plane,
-    Sampling, Scene, Shape, Sphere, Triangle, check, hints,
+    Sampling, Scene, Sphere, check, hints,
 };
 use glint::trace::Threads;
 
 use crate::pictures::{differing, picture};
-use crate::random::Dice;
+use crate::random::{Dice, placed};
 use crate::scalar::assert_agreed;
-
-/// The demo scaled and moved.
-fn demo(scale: f64, by: DVec3) -> Scene {
-    let at = |v: DVec3| v * scale + by;
-    let mut scene = Scene::demo();
-    for index in 0..scene.objects.len() {
-        match &mut scene.objects[index].shape {
-            Shape::Sphere(Sphere { center, radius }) => {
-                (*center, *radius) = (at(*center), *radius * scale);
-            }
-            Shape::Plane(Plane { point, .. }) => *point = at(*point),
-            Shape::Triangle(Triangle { a, b, c }) => (*a, *b, *c) = (at(*a), at(*b), at(*c)),
-            Shape::Disc(_) | Shape::Mesh(_) => unreachable!("the demo has none"),
-        }
-    }
-    for index in 0..scene.lights.len() {
-        let light = &mut scene.lights[index];
-        light.position = at(light.position);
-        if let Some(marker) = &mut light.marker {
-            marker.radius *= scale;
-        }
-    }
-    scene.camera.position = at(scene.camera.position);
-    scene
-}
 
 #[test]
 fn something_very_far_away_changes_nothing_else() {
@@ -76,7 +51,7 @@ fn something_very_far_away_changes_nothing_else() {
 #[test]
 fn a_scene_of_any_size_anywhere_shows_the_same() {
     let request = RenderRequest::sized(200, 150);
-    let known = picture(&demo(1.0, DVec3::ZERO), &request).0;
+    let known = picture(&Scene::demo(), &request).0;
     let far = DVec3::new(0.8, -0.5, 0.3);
     for (scale, away) in [
         (1e-9, 0.0),
@@ -88,7 +63,7 @@ fn a_scene_of_any_size_anywhere_shows_the_same() {
         (1e-6, 1e3),
         (1e9, 5e11),
     ] {
-        let scene = demo(scale, far * away);
+        let scene = placed(Scene::demo(), scale, far * away);
         assert_eq!(check(&scene), Ok(()));
         let other = picture(&scene, &request).0;
         let differ = differing(&known, &other, 1);

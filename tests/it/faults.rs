@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use glint::scene::{Document, Object, Recovery, Scene, Sphere};
 
-use crate::program::{self, FLIGHT, done, names, run, wait_until};
+use crate::program::{self, FLIGHT, done, names, stderr_of, wait_until};
 use crate::random::Dice;
 
 /// Number of programs that are killed while they save.
@@ -24,14 +24,6 @@ fn glint(folder: &Path, words: &[&str]) -> Command {
     let mut command = program::glint(words);
     command.current_dir(folder);
     command
-}
-
-/// The error message of a command that fails.
-fn fail(command: &mut Command) -> String {
-    let output = run(command);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    said
 }
 
 /// Writes a mesh file of two parts with this many faces; converted, it gives a scene file that contains them.
@@ -247,7 +239,7 @@ fn a_folder_that_must_not_be_written_to_is_named_and_left_as_it_was() {
         if let Some(nobody) = nobody {
             command.uid(nobody).gid(nobody);
         }
-        let said = fail(&mut command);
+        let said = stderr_of(&mut command, 1);
         assert!(
             said.contains("shut")
                 && said.contains("Permission denied")
@@ -305,7 +297,7 @@ fn a_video_that_a_full_disk_cuts_short_takes_no_ones_place() {
     // Leave space for a third of the next video.
     let fill = vec![0; 248 << 10];
     fs::write(disk.0.join("fill"), fill).expect("written");
-    let said = fail(&mut make("1-50", "100"));
+    let said = stderr_of(&mut make("1-50", "100"), 1);
     assert!(said.contains("No space left on device"), "{said}");
     assert_eq!(names(&disk.0), ["fill", "v.mp4"]);
     assert!(fs::read(&video).expect("there") == before);
@@ -334,10 +326,12 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
         "--width",
         "32",
     ]));
-    let before = names(&disk.0)
-        .into_iter()
-        .map(|name| fs::read(disk.0.join(name)).expect("there"));
-    let before: Vec<_> = before.collect();
+    let contents = || {
+        let names = names(&disk.0).into_iter();
+        let files = names.map(|name| fs::read(disk.0.join(name)).expect("there"));
+        files.collect::<Vec<_>>()
+    };
+    let before = contents();
     let full = ["No space left on device", "disk"];
     for words in [
         &["convert", "large.obj", "-o", "disk/scene.ron"][..],
@@ -351,20 +345,14 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
             "2000",
         ],
     ] {
-        let said = fail(&mut place(words));
+        let said = stderr_of(&mut place(words), 1);
         assert!(
             full.iter().all(|word| said.contains(word)),
             "{words:?}: {said}"
         );
     }
     assert_eq!(names(&disk.0), ["picture.png", "scene.ron"]);
-    let after = names(&disk.0)
-        .into_iter()
-        .map(|name| fs::read(disk.0.join(name)).expect("there"));
-    assert!(
-        before.iter().eq(&after.collect::<Vec<_>>()),
-        "nothing has changed"
-    );
+    assert!(before == contents(), "nothing has changed");
 
     // Frames stop with an error, and go on once there is space.
     let export = [
@@ -377,7 +365,7 @@ fn a_full_disk_loses_nothing_that_was_on_it() {
         "--width",
         "64",
     ];
-    let said = fail(&mut place(&export));
+    let said = stderr_of(&mut place(&export), 1);
     assert!(full.iter().all(|word| said.contains(word)), "{said}");
     let status = Command::new("mount")
         .args(["-o", "remount,size=2m"])

@@ -8,13 +8,12 @@ use std::time::Instant;
 
 use glint::animate::{from_table, from_text, to_table, to_text};
 use glint::export::{Frames, Hash, Manifest, Pattern};
-use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Camera, Document, EXAMPLES, Example, Method as _, RayOffset, Sampling, Scene, check,
 };
-use glint::trace::RenderControl;
 
+use crate::pictures::picture;
 use crate::random::Dice;
 use crate::scenes::files_in;
 
@@ -138,8 +137,8 @@ fn enter_scene(text: &str) -> bool {
         sampling: Sampling::ADAPTIVE,
         ..RenderRequest::of(&document.scene, 12, 9)
     };
-    let drawn = render(&document.scene, &request, &RenderControl::default());
-    assert_eq!(drawn.expect("not stopped").0.pixels.len(), 12 * 9);
+    let (drawn, _) = picture(&document.scene, &request);
+    assert_eq!(drawn.pixels.len(), 12 * 9);
     true
 }
 

@@ -7,7 +7,10 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Context, Event, Key, Modifiers, Pos2, TexturesDelta, vec2};
+use egui::{
+    Context, Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Pos2, TexturesDelta,
+    TouchPhase, vec2,
+};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, TestRenderer};
 use glint::editor::{Action, Editor, Time};
@@ -85,8 +88,7 @@ impl EditorHarness {
 
     /// A window on a scene, with no answers.
     pub fn on(scene: Scene) -> Self {
-        let header = String::new();
-        let text = Document { header, scene }.to_text();
+        let text = Document::of(scene).to_text();
         Self::with(|_| Vec::new(), Some(&text.expect("a text")))
     }
 
@@ -177,6 +179,12 @@ impl EditorHarness {
         seen.next().is_some()
     }
 
+    /// Asserts that the window shows one text that contains these words.
+    #[track_caller]
+    pub fn assert_says(&self, words: &str) {
+        self.window.get_by_label_contains(words);
+    }
+
     pub fn editor(&self) -> &Editor {
         self.window.state().editor()
     }
@@ -224,8 +232,45 @@ impl EditorHarness {
         self.settle();
     }
 
+    /// The middle of what has this name.
+    pub fn middle_of(&self, name: &str) -> Pos2 {
+        self.window.get_by_label(name).rect().center()
+    }
+
+    /// Clicks while these modifier keys are held.
+    pub fn click_with(&mut self, modifiers: Modifiers, name: &str) {
+        self.window.get_by_label(name).click_modifiers(modifiers);
+        self.settle();
+    }
+
+    /// Turns the mouse wheel.
+    pub fn turn_wheel(&mut self, unit: MouseWheelUnit, amount: f32) {
+        self.window.event(Event::MouseWheel {
+            unit,
+            delta: vec2(0.0, amount),
+            phase: TouchPhase::Move,
+            source: MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+    }
+
+    /// Clicks at a position in the window.
+    pub fn click_at(&mut self, at: Pos2) {
+        self.window.drag_at(at);
+        self.window.drop_at(at);
+        self.settle();
+    }
+
     pub fn press(&mut self, modifiers: Modifiers, key: Key) {
         self.window.key_press_modifiers(modifiers, key);
+        self.settle();
+    }
+
+    /// Holds a key down for this many frames.
+    pub fn hold(&mut self, key: Key, frames: usize) {
+        self.window.key_down(key);
+        (0..frames).for_each(|_| self.window.step());
+        self.window.key_up(key);
         self.settle();
     }
 
@@ -251,28 +296,45 @@ impl EditorHarness {
         self.settle();
     }
 
-    /// Replaces the number in a field by typing.
-    pub fn type_into(&mut self, field: &str, text: &str) {
+    /// Types a text where the cursor is.
+    pub fn type_text(&mut self, text: &str) {
+        self.window.event(Event::Text(text.to_owned()));
+        self.settle();
+    }
+
+    /// Clicks a number to edit it as text.
+    pub fn put_cursor_into(&mut self, field: &str) {
         self.window
             .get_by_role_and_label(Role::SpinButton, field)
             .click();
         self.settle();
-        self.window.event(Event::Text(text.to_owned()));
-        self.settle();
+    }
+
+    /// Replaces the number in a field by typing.
+    pub fn type_into(&mut self, field: &str, text: &str) {
+        self.put_cursor_into(field);
+        self.type_text(text);
         self.press(Modifiers::NONE, Key::Enter);
     }
 
-    /// Drags a number, calls `meanwhile`, and cancels the drag with Escape; the button stays down. Returns the
-    /// pointer's position.
-    pub fn give_up_dragging(&mut self, field: &str, meanwhile: impl FnOnce(&Self)) -> Pos2 {
+    /// Presses the button on a number field and moves sideways in several steps. Returns where it was pressed.
+    fn pull(&mut self, field: &str, points: f32) -> Pos2 {
         let field = self.window.get_by_role_and_label(Role::SpinButton, field);
         let start = field.rect().center();
         self.window.drag_at(start);
         self.window.step();
         for part in 1..=5 {
-            self.window.hover_at(start + vec2(8.0 * part as f32, 0.0));
+            self.window
+                .hover_at(start + vec2(points * part as f32 / 5.0, 0.0));
             self.window.step();
         }
+        start
+    }
+
+    /// Drags a number, calls `meanwhile`, and cancels the drag with Escape; the button stays down. Returns the
+    /// pointer's position.
+    pub fn give_up_dragging(&mut self, field: &str, meanwhile: impl FnOnce(&Self)) -> Pos2 {
+        let start = self.pull(field, 40.0);
         meanwhile(self);
         self.window.key_down(Key::Escape);
         self.window.step();
@@ -288,8 +350,7 @@ impl EditorHarness {
             .click();
         self.settle();
         self.press(CTRL, Key::A);
-        self.window.event(Event::Text(text.to_owned()));
-        self.settle();
+        self.type_text(text);
         self.press(Modifiers::NONE, Key::Enter);
     }
 
@@ -311,19 +372,8 @@ impl EditorHarness {
 
     /// Drags a number field sideways in several moves.
     pub fn drag(&mut self, field: &str, points: f32) {
-        let start = self
-            .window
-            .get_by_role_and_label(Role::SpinButton, field)
-            .rect()
-            .center();
-        self.window.drag_at(start);
-        self.window.step();
-        for part in 1..=5 {
-            self.window
-                .hover_at(start + egui::vec2(points * part as f32 / 5.0, 0.0));
-            self.window.step();
-        }
-        self.window.drop_at(start + egui::vec2(points, 0.0));
+        let start = self.pull(field, points);
+        self.window.drop_at(start + vec2(points, 0.0));
         self.settle();
     }
 }

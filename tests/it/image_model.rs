@@ -6,8 +6,8 @@ use glam::DVec3;
 use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Disc, Document, HighlightMethod, Mesh, Method as _, Methods, Plane, Precision, Projection,
-    RayOffset, Sampling, Scene, Shape, Sphere, SphereMethod, Triangle, TriangleMethod,
+    Document, HighlightMethod, Method as _, Methods, Plane, Precision, Projection, RayOffset,
+    Sampling, Scene, Shape, Sphere, SphereMethod, TriangleMethod,
 };
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
@@ -219,15 +219,11 @@ fn the_classic_formulas_show_the_same_where_they_work() {
         offset: RayOffset::Fixed(0.1),
         highlight: HighlightMethod::Power,
     };
-    let classic = picture(
-        &scene,
-        &RenderRequest {
-            methods,
-            ..RenderRequest::sized(160, 120)
-        },
-    )
-    .0;
-    let differ = differing(&robust, &classic, 2);
+    let wanted = RenderRequest {
+        methods,
+        ..RenderRequest::sized(160, 120)
+    };
+    let differ = differing(&robust, &picture(&scene, &wanted).0, 2);
     assert!(differ <= 100, "{differ} of 19200");
 }
 
@@ -250,106 +246,52 @@ fn every_formula_draws_the_demo() {
 }
 
 /// The default formulas with one of them replaced, for each alternative.
-fn changed_one_at_a_time() -> Vec<(String, Methods)> {
+fn changed_one_at_a_time() -> Vec<(&'static str, Methods)> {
     let default = Methods::default();
-    let spheres = SphereMethod::ALL[1..].iter().map(|way| {
-        (
-            way.id,
-            Methods {
-                sphere: way.value,
-                ..default
-            },
-        )
-    });
-    let triangles = TriangleMethod::ALL[1..].iter().map(|way| {
-        (
-            way.id,
-            Methods {
-                triangle: way.value,
-                ..default
-            },
-        )
-    });
-    let offsets = RayOffset::ALL[1..].iter().map(|way| {
-        (
-            way.id,
-            Methods {
-                offset: way.value,
-                ..default
-            },
-        )
-    });
-    let highlights = HighlightMethod::ALL[1..].iter().map(|way| {
-        (
-            way.id,
-            Methods {
-                highlight: way.value,
-                ..default
-            },
-        )
-    });
-    let all = spheres.chain(triangles).chain(offsets).chain(highlights);
-    all.map(|(word, methods)| (word.to_owned(), methods))
-        .collect()
-}
-
-/// The demo scaled and moved as a whole.
-fn placed(scale: f64, by: DVec3) -> Scene {
-    let mut scene = Scene::demo();
-    let place = |v: DVec3| v * scale + by;
-    for object in scene.objects.iter_mut() {
-        object.shape = match object.shape.clone() {
-            Shape::Sphere(Sphere { center, radius }) => Shape::Sphere(Sphere {
-                center: place(center),
-                radius: radius * scale,
-            }),
-            Shape::Plane(Plane { point, normal }) => Shape::Plane(Plane {
-                point: place(point),
-                normal,
-            }),
-            Shape::Triangle(Triangle { a, b, c }) => Shape::Triangle(Triangle {
-                a: place(a),
-                b: place(b),
-                c: place(c),
-            }),
-            Shape::Disc(disc) => Shape::Disc(Disc {
-                center: place(disc.center),
-                radius: disc.radius * scale,
-                ..disc
-            }),
-            Shape::Mesh(mesh) => Shape::Mesh(Mesh {
-                position: place(mesh.position),
-                scale: mesh.scale * scale,
-                ..mesh
-            }),
-        };
+    let mut all = Vec::new();
+    for way in &SphereMethod::ALL[1..] {
+        let sphere = way.value;
+        all.push((way.id, Methods { sphere, ..default }));
     }
-    for light in scene.lights.iter_mut() {
-        light.position = place(light.position);
-        if let Some(marker) = &mut light.marker {
-            marker.radius *= scale;
-        }
+    for way in &TriangleMethod::ALL[1..] {
+        let triangle = way.value;
+        all.push((
+            way.id,
+            Methods {
+                triangle,
+                ..default
+            },
+        ));
     }
-    scene.camera.position = place(scene.camera.position);
-    scene.camera.orthographic_height *= scale;
-    scene
+    for way in &RayOffset::ALL[1..] {
+        let offset = way.value;
+        all.push((way.id, Methods { offset, ..default }));
+    }
+    for way in &HighlightMethod::ALL[1..] {
+        let highlight = way.value;
+        all.push((
+            way.id,
+            Methods {
+                highlight,
+                ..default
+            },
+        ));
+    }
+    all
 }
 
 fn changed_ppm(scale: f64, by: DVec3, methods: Methods, precision: Precision) -> usize {
     let at = |scene: &Scene, methods| {
-        picture(
-            scene,
-            &RenderRequest {
-                precision,
-                methods,
-                ..RenderRequest::sized(320, 320)
-            },
-        )
-        .0
+        let wanted = RenderRequest {
+            precision,
+            methods,
+            ..RenderRequest::sized(320, 320)
+        };
+        picture(scene, &wanted).0
     };
     let (here, there) = (
         at(&Scene::demo(), Methods::default()),
-        at(&placed(scale, by), methods),
+        at(&random::placed(Scene::demo(), scale, by), methods),
     );
     let differ = differing(&here, &there, 1);
     differ * 1_000_000 / here.pixels.len()
@@ -493,22 +435,13 @@ fn what_is_left_out_would_not_have_shown() {
             ..Methods::default()
         };
         let at = |methods| {
-            picture(
-                &scene,
-                &RenderRequest {
-                    methods,
-                    ..RenderRequest::sized(256, 192)
-                },
-            )
-            .0
+            let wanted = RenderRequest {
+                methods,
+                ..RenderRequest::sized(256, 192)
+            };
+            picture(&scene, &wanted).0
         };
-        let (culled, whole) = (at(Methods::default()), at(everything));
-        let differ = culled
-            .pixels
-            .iter()
-            .zip(&whole.pixels)
-            .filter(|(a, b)| a != b)
-            .count();
+        let differ = differing(&at(Methods::default()), &at(everything), 0);
         assert!(differ <= 25, "{differ} pixels differ");
     }
 }

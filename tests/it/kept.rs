@@ -2,7 +2,7 @@
 //! for.
 
 use glam::DVec3;
-use glint::image::{Image, render, render_into};
+use glint::image::{Image, render_into};
 use glint::mesh::SOLIDS;
 use glint::plan::{Planner, RenderRequest};
 use glint::scene::{
@@ -10,6 +10,7 @@ use glint::scene::{
 };
 use glint::trace::RenderControl;
 
+use crate::pictures::picture;
 use crate::random::Dice;
 
 /// Number of balls: enough for a tree, and with so few pixels each that hits are sorted.
@@ -107,20 +108,17 @@ fn pictures_after_others_are_as_if_they_were_the_first() {
             ..RenderRequest::sized(160, 120)
         };
         let control = RenderControl::default();
-        let drawn = |scene: &Scene, request: &RenderRequest| {
-            render(scene, request, &control).expect("not stopped").0
-        };
         for (what, change) in changes {
             change(&mut scene, &mut dice);
             let mut kept = Image::default();
             render_into(&mut kept, &mut planner, &scene, &request, &control).expect("not stopped");
-            assert!(kept == drawn(&scene, &request), "{what}, {sampling:?}");
+            assert!(kept == picture(&scene, &request).0, "{what}, {sampling:?}");
             if sampling == Sampling::Centres {
                 let listed = RenderRequest {
                     accelerator: Accelerator::List,
                     ..request
                 };
-                assert!(kept == drawn(&scene, &listed), "{what}, listed");
+                assert!(kept == picture(&scene, &listed).0, "{what}, listed");
             }
         }
     }

@@ -1,10 +1,8 @@
 //! Rendering of meshes, and the tree that is used for many objects.
 
-use std::f64::consts::TAU;
-
 use glam::DVec3;
 use glint::animate::pose;
-use glint::mesh::{Triangles, icosphere};
+use glint::mesh::{Triangles, globe, icosphere};
 use glint::plan::{Model, RenderRequest};
 use glint::scene::{
     Accelerator, Document, Mesh, Object, Precision, Sampling, Scene, Shape, Sphere, Triangle,
@@ -17,43 +15,9 @@ use crate::random;
 /// A closed bumpy ball around the origin, of about this many triangles.
 fn bumpy(triangles: f64) -> Triangles {
     let rings = (triangles / 4.0).sqrt() as u32;
-    let columns = 2 * rings;
-    let place = |ring: u32, column: u32| {
-        let (down, around) = (
-            f64::from(ring) / f64::from(rings) * TAU / 2.0,
-            f64::from(column % columns) / f64::from(columns) * TAU,
-        );
-        let radius = 20.0 * (1.0 + 0.1 * (5.0 * around).sin() * (4.0 * down).sin());
-        DVec3::new(
-            down.sin() * around.cos(),
-            down.cos(),
-            down.sin() * around.sin(),
-        ) * radius
-    };
-    let mut points = vec![place(0, 0), place(rings, 0)];
-    let number = |ring: u32, column: u32| match ring {
-        0 => 0,
-        _ if ring == rings => 1,
-        _ => 2 + (ring - 1) * columns + column % columns,
-    };
-    for ring in 1..rings {
-        points.extend((0..columns).map(|column| place(ring, column)));
-    }
-    let mut faces = Vec::new();
-    for ring in 0..rings {
-        for column in 0..columns {
-            let (a, b) = (number(ring, column), number(ring, column + 1));
-            let (c, d) = (number(ring + 1, column + 1), number(ring + 1, column));
-            // Clockwise as seen from outside.
-            if ring > 0 {
-                faces.push([a, c, b]);
-            }
-            if ring + 1 < rings {
-                faces.push([a, d, c]);
-            }
-        }
-    }
-    Triangles::new(points, faces).expect("a mesh")
+    globe(rings, |polar, azimuth| {
+        20.0 * (1.0 + 0.1 * (5.0 * azimuth).sin() * (4.0 * polar).sin())
+    })
 }
 
 /// Joining or pasting more would make a scene that could be neither saved nor read.
@@ -226,15 +190,7 @@ fn a_mesh_is_its_triangles() {
 
 #[test]
 fn where_a_mesh_is_costs_no_precision() {
-    let by = DVec3::new(3e6, -2e6, 5e6);
-    let mut moved = exhibition();
-    for object in moved.objects.iter_mut() {
-        object.shape = object.shape.moved(by);
-    }
-    for light in moved.lights.iter_mut() {
-        light.position += by;
-    }
-    moved.camera.position += by;
+    let moved = random::placed(exhibition(), 1.0, DVec3::new(3e6, -2e6, 5e6));
     let wanted = RenderRequest {
         precision: Precision::Single,
         ..RenderRequest::sized(320, 240)

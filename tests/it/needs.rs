@@ -2,14 +2,14 @@
 //! not apply where it must not.
 
 use glam::DVec3;
-use glint::image::{Image, render};
-use glint::plan::{Model, Plan, PlanCache, RenderRequest, needs};
+use glint::image::Image;
+use glint::plan::{Model, Need, Plan, PlanCache, RenderRequest, needs};
 use glint::scene::{
     Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
 };
-use glint::trace::{Rays, RenderControl};
+use glint::trace::Rays;
 
-use crate::pictures::picture;
+use crate::pictures::{differing, picture};
 use crate::random;
 
 fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
@@ -20,11 +20,15 @@ fn picture_of(scene: &Scene, model: Model) -> (Image, Rays) {
     picture(scene, &wanted)
 }
 
-/// What the plan says about a rule.
-fn said(scene: &Scene, rule: &str) -> String {
+/// The plan's answer to a rule.
+fn need(scene: &Scene, rule: &str) -> Need {
     let needs = needs(scene, &RenderRequest::still(scene));
     let need = needs.into_iter().find(|need| need.rule == rule);
-    need.expect("a known rule").what
+    need.expect("a known rule")
+}
+
+fn said(scene: &Scene, rule: &str) -> String {
+    need(scene, rule).what
 }
 
 /// The demo with a change applied.
@@ -50,13 +54,7 @@ fn what_is_left_out_is_not_missed() {
     for (index, scene) in scenes.enumerate() {
         let (needed, few) = picture_of(&scene, Model::Needed);
         let (everything, many) = picture_of(&scene, Model::Everything);
-        let differ = needed
-            .pixels
-            .iter()
-            .zip(&everything.pixels)
-            .filter(|(a, b)| a != b)
-            .count();
-        assert_eq!(differ, 0, "scene {index}");
+        assert_eq!(differing(&needed, &everything, 0), 0, "scene {index}");
         assert!(
             few.shadow < many.shadow && few.reflected <= many.reflected,
             "{few:?} {many:?}"
@@ -93,9 +91,7 @@ fn what_is_culled_is_not_missed() {
                     sampling,
                     ..RenderRequest::sized(96, 72)
                 };
-                let traced = render(&scene, &request, &RenderControl::default());
-                let (image, cost) = traced.expect("not stopped");
-                (image, cost.rays)
+                picture(&scene, &request)
             };
             let (culled, unculled) = (traced(Model::Needed), traced(Model::Unculled));
             assert_eq!(culled.1, unculled.1, "rays of scene {index}, {sampling:?}");
@@ -262,10 +258,7 @@ fn far_faces_of_solids_are_left_out_and_of_open_meshes_are_not() {
 #[test]
 fn what_was_asked_for_is_said_to_be() {
     let why = |change: fn(&mut Scene), rule: &str| {
-        let scene = demo(change);
-        let needs = needs(&scene, &RenderRequest::still(&scene));
-        let need = needs.into_iter().find(|need| need.rule == rule);
-        let need = need.expect("a known rule");
+        let need = need(&demo(change), rule);
         format!("{}: {}", need.what, need.why)
     };
     let tree = why(

@@ -30,6 +30,15 @@ pub fn done(command: &mut Command) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
+/// What a command that ends with this exit code writes to stderr.
+#[track_caller]
+pub fn stderr_of(command: &mut Command, code: i32) -> String {
+    let output = run(command);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{command:?}: {said}");
+    said
+}
+
 /// The names of the files in a folder, sorted, including hidden ones.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");

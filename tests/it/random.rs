@@ -4,9 +4,11 @@
 use glam::DVec3;
 use glint::lab::stability::{GOLDEN, mixed, share};
 use glint::scene::{
-    Camera, ColorPack, Disc, Light, LightObj, Object, Plane, Projection, Render, Scene, Shape,
-    Sphere, Triangle, check,
+    Camera, ColorPack, Disc, Document, Light, LightObj, Object, Plane, Projection, Render, Scene,
+    Shape, Sphere, Triangle, check,
 };
+
+use crate::program::FLIGHT;
 
 /// Random numbers that are the same on every machine.
 pub struct Dice(pub u64);
@@ -70,6 +72,27 @@ pub fn published() -> [Scene; 2] {
     second.camera.look_at = DVec3::new(-0.25, -0.70, -0.67);
     second.camera.up = DVec3::new(-0.25, 0.71, -0.65);
     [first, second]
+}
+
+/// A scene as a whole, scaled about the origin and then moved.
+pub fn placed(mut scene: Scene, scale: f64, by: DVec3) -> Scene {
+    for object in scene.objects.iter_mut() {
+        object.shape = object.shape.scaled(DVec3::ZERO, scale).moved(by);
+    }
+    for light in scene.lights.iter_mut() {
+        light.position = light.position * scale + by;
+        if let Some(marker) = &mut light.marker {
+            marker.radius *= scale;
+        }
+    }
+    scene.camera.position = scene.camera.position * scale + by;
+    scene.camera.orthographic_height *= scale;
+    scene
+}
+
+/// The scene of the published flight.
+pub fn flight() -> Scene {
+    Document::load(FLIGHT.as_ref()).expect("a scene").scene
 }
 
 /// Triangles of arbitrary form over a floor that mirrors them and receives their shadows from two lights.

@@ -6,13 +6,13 @@
 //! It treats faces as flat, as the specification does not say how the normals of a curved surface are computed.
 
 use glam::{DQuat, DVec3};
-use glint::image::{Image, render};
+use glint::image::Image;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Camera, ColorPack, EXAMPLES, Light, Mesh, Precision, Projection, Sampling, Scene, Shape,
 };
-use glint::trace::RenderControl;
 
+use crate::pictures::picture;
 use crate::random;
 
 const WIDTH: u32 = 160;
@@ -305,8 +305,7 @@ fn by_glint(scene: &Scene, precision: Precision) -> Image {
         sampling: Sampling::Centres,
         ..RenderRequest::sized(WIDTH, HEIGHT)
     };
-    let drawn = render(scene, &wanted, &RenderControl::default());
-    drawn.expect("not stopped").0
+    picture(scene, &wanted).0
 }
 
 /// The number of pixels that differ by more than one level of 255 in some channel.

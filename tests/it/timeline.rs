@@ -10,30 +10,28 @@ use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::animate::{CameraPath, Preset, shot};
 use glint::editor::{Action, Edit, Editor, Repeat, Selection, Time};
-use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{
     Animation, Document, Interpolation, Key as SceneKey, KeyId, Keys, Leftover, MAX_SECONDS, Owner,
     Projection, Scene, Target, Value,
 };
-use glint::trace::RenderControl;
 use glint::ui::Ask;
 use glint::worker::{ThumbnailJob, Worker};
 
 use crate::harness::{CTRL, EditorHarness, survey_flight};
+use crate::pictures::picture;
 use crate::program::FLIGHT;
+use crate::random::flight;
 
-/// Unsaved work left by an ended program.
-fn unsaved(document: Document) -> Leftover {
-    Leftover {
+/// An editor with unsaved work left by an ended program.
+fn recovered(document: Document) -> Editor {
+    let mut editor = Editor::demo();
+    editor.recover(Leftover {
         document,
         path: None,
         stamp: None,
-    }
-}
-
-fn flight() -> Scene {
-    Document::load(FLIGHT.as_ref()).expect("a scene").scene
+    });
+    editor
 }
 
 /// A window on the demo with camera keys at ten frames per second, each given as a time and an offset to the right.
@@ -46,8 +44,7 @@ pub fn animation(keys: &[(f64, f64)]) -> EditorHarness {
     };
     scene.animation_mut().keys = keys.iter().map(key).collect();
     scene.animation_mut().frames_per_second = 10.0;
-    let document = Document::of(scene);
-    EditorHarness::with(|_| Vec::new(), Some(&document.to_text().expect("a text")))
+    EditorHarness::on(scene)
 }
 
 /// Times of the camera keys in seconds, rounded to milliseconds.
@@ -93,11 +90,7 @@ fn drag(harness: &mut EditorHarness, from: Pos2, by: egui::Vec2, modifiers: Modi
 /// Selects the second and the third camera key.
 fn select_two_keys(harness: &mut EditorHarness) {
     harness.click("Key 2");
-    harness
-        .window
-        .get_by_label("Key 3")
-        .click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Key 3");
 }
 
 /// Width of a second on the timeline, in points.
@@ -142,12 +135,11 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
     assert!((first - start.position).length() < 2.0, "{first:?}");
     assert!((last - end.position).length() < 2.0, "{last:?}");
     assert!(harness.editor().looks_through(), "the flight is shown");
-    harness.window.get_by_label_contains("samples → ");
+    harness.assert_says("samples → ");
     assert_eq!(harness.editor().undo_label(), Some("Record flight"));
     // The slider makes new keys from the same take.
-    let mut editor = Editor::demo();
     let text = harness.editor().to_text().expect("a text");
-    editor.recover(unsaved(Document::from_text(&text).expect("a scene")));
+    let mut editor = recovered(Document::from_text(&text).expect("a scene"));
     editor.apply(Action::Time(Time::Simplify(0.1)));
     survey_flight(&mut editor);
     let fine = editor.scene().animation.keys.len();
@@ -186,8 +178,7 @@ fn no_recorded_flight_is_lost_while_it_becomes_keys() {
 
 #[test]
 fn a_recording_without_a_movement_leaves_the_flight_as_it_is() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     let before = editor.scene().animation.clone();
     editor.apply(Action::Time(Time::Record));
     for tenth in 0..20 {
@@ -207,25 +198,14 @@ fn keys_are_set_overwritten_and_deleted() {
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(times(&harness), [0.0]);
     // With one key the flight has no duration: a second key is added to the text.
-    let mut later = harness.scene().animation.clone();
-    Arc::make_mut(&mut later)
-        .keys
-        .push(SceneKey::new(2.0, harness.scene().camera.clone()));
-    let text = Document {
-        header: String::new(),
-        scene: Scene {
-            animation: later,
-            ..harness.scene().clone()
-        },
-    };
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text.to_text().expect("a text")));
+    let mut scene = harness.scene().clone();
+    let later = SceneKey::new(2.0, scene.camera.clone());
+    scene.animation_mut().keys.push(later);
+    let mut harness = EditorHarness::on(scene);
     harness.press(Modifiers::NONE, Key::CloseBracket);
     assert_eq!(harness.editor().shown_time(), 2.0);
     // Flies away from the key, and overwrites it with the view.
-    harness.window.key_down(Key::D);
-    (0..30).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::D);
-    harness.settle();
+    harness.hold(Key::D, 30);
     assert!(!harness.editor().looks_through(), "flying leaves the shot");
     let view = harness.scene().camera.clone();
     assert_ne!(
@@ -256,8 +236,7 @@ fn keys_are_set_overwritten_and_deleted() {
 
 #[test]
 fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording");
     assert!(
@@ -291,8 +270,7 @@ fn keys_made_anew_keep_the_time_that_the_flight_was_given() {
 
 #[test]
 fn an_end_that_is_taken_away_or_added_does_not_stretch_the_recording() {
-    let mut editor = Editor::demo();
-    editor.recover(unsaved(Document::load(FLIGHT.as_ref()).expect("a scene")));
+    let mut editor = recovered(Document::of(flight()));
     survey_flight(&mut editor);
     let said = editor.timeline().worst.expect("a recording").deviation;
     let before = editor.scene().animation.clone();
@@ -352,7 +330,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     drag(&mut harness, at, vec2(1.0 * second, 0.0), Modifiers::NONE);
     assert_eq!(times(&harness), [0.0, 2.5, 3.0, 4.0]);
     let words = "This has replaced 1 key; undo brings it back";
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
     // Keys cannot be moved before the start.
     let at = place_of(&harness, "Key 2");
     drag(&mut harness, at, vec2(-9.0 * second, 0.0), Modifiers::NONE);
@@ -373,7 +351,7 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     assert_eq!(harness.editor().undo_label(), Some("Key: time"));
     harness.type_into("first at", "3");
     assert_eq!(times(&harness), [0.0, 3.0, 4.0]);
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
 }
 
 #[test]
@@ -397,9 +375,7 @@ fn the_playhead_is_dragged_and_stepped_and_the_picture_follows() {
     let there = shot(&scene, &CameraPath::new(&scene.animation.keys), 1.2);
     let size = harness.picture();
     let expected = RenderRequest::of(&there, size.width as u32, size.height as u32);
-    let direct = render(&there, &expected, &RenderControl::default())
-        .expect("whole")
-        .0;
+    let direct = picture(&there, &expected).0;
     assert!(harness.picture() == direct, "what is shown is the frame");
     assert_eq!(harness.editor().undo_label(), None, "looking is no edit");
     harness.press(Modifiers::NONE, Key::Period);
@@ -517,7 +493,7 @@ fn the_window_plays_and_pauses() {
         "a second of steps: {playhead}"
     );
     assert!(harness.editor().looks_through());
-    harness.window.get_by_label_contains(" of 10 fps");
+    harness.assert_says(" of 10 fps");
     harness.press(Modifiers::NONE, Key::G);
     assert!(!harness.editor().timeline().is_playing);
     assert_eq!(
@@ -563,7 +539,7 @@ fn what_the_timeline_cannot_be_is_told_and_not_taken() {
         ("playback speed", "fast", "“fast” is not a number"),
     ] {
         harness.type_into(field, text);
-        harness.window.get_by_label_contains(words);
+        harness.assert_says(words);
         assert_eq!(harness.scene(), &before, "{field}: {text}");
     }
     assert_eq!(harness.editor().timeline().speed, 1.0);
@@ -600,15 +576,11 @@ fn a_length_that_only_a_file_can_have_is_left_in_silence() {
     let mut harness = animation(&[(0.0, 0.0), (0.05, 60.0)]);
     let before = harness.scene().clone();
     let field = "length of the flight";
-    let field = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, field);
-    field.click();
-    harness.settle();
+    harness.put_cursor_into(field);
     harness.press(Modifiers::NONE, Key::Enter);
     assert_eq!(harness.scene(), &before);
     let words = "length of the flight must be between";
-    assert!(harness.window.query_by_label_contains(words).is_none());
+    assert!(!harness.sees(words));
 }
 
 #[test]
@@ -625,9 +597,7 @@ fn a_flight_that_nothing_can_stretch_stays_as_it_is() {
     let mut harness = EditorHarness::on(scene);
     let before = harness.scene().clone();
     harness.type_into("length of the flight", "1");
-    harness
-        .window
-        .get_by_label_contains("length of the flight must be between");
+    harness.assert_says("length of the flight must be between");
     assert_eq!(harness.scene(), &before);
 }
 
@@ -677,10 +647,7 @@ fn a_hand_on_the_shot_moves_nothing_behind_it_and_a_click_looks_through_it() {
 fn a_key_is_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
     // From farther back, the flight is in view.
-    harness.window.key_down(Key::S);
-    (0..60).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::S);
-    harness.settle();
+    harness.hold(Key::S, 60);
     let before = harness.scene().animation.keys[1].value.clone();
     let at = place_of(&harness, "Key 2 in the view");
     drag(&mut harness, at, vec2(0.0, -60.0), Modifiers::NONE);
@@ -724,10 +691,7 @@ fn undo_of_a_movement_out_of_the_shot_looks_through_it_again() {
     let mut harness = animation(&[(0.0, 0.0), (2.0, 60.0)]);
     harness.press(Modifiers::NONE, Key::C);
     assert!(harness.editor().looks_through());
-    harness.window.key_down(Key::W);
-    (0..20).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::W);
-    harness.settle();
+    harness.hold(Key::W, 20);
     assert!(!harness.editor().looks_through());
     harness.press(Modifiers::COMMAND, Key::Z);
     assert!(harness.editor().looks_through());
@@ -777,7 +741,7 @@ fn what_has_keys_is_keyed_by_changing_it() {
     harness.press(Modifiers::NONE, Key::Delete);
     assert!(harness.scene().animation.tracks.is_empty());
     let told = "Delete Sun: keys were deleted too (Sun: intensity)";
-    harness.window.get_by_label_contains(told);
+    harness.assert_says(told);
 }
 
 #[test]
@@ -831,11 +795,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     assert_eq!((key.time, key.value), (1.5, Value::Number(0.5)));
     assert_eq!(harness.scene().lights[0].intensity, 0.2, "its own stays");
     // It is still selected; with a camera key added, both are moved by the same amount.
-    harness
-        .window
-        .get_by_label("Key 2")
-        .click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Key 2");
     assert_eq!(harness.editor().selection().keys().len(), 2);
     let at = place_of(&harness, "Key 2");
     let by = vec2(0.5 * points_per_second(&harness), 0.0);
@@ -896,9 +856,7 @@ fn keys_of_values_are_edited_like_those_of_the_camera() {
     // A click on a row's label selects the keys of the row, and a marquee can start there.
     let row = place_of(&harness, &format!("{track} key 1"));
     let at = pos2(30.0, row.y);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(at);
     let all = [0, 1].map(|index| KeyId {
         track: Some(0),
         index,
@@ -1001,16 +959,12 @@ fn paths_go_out_to_a_table_and_come_back() {
         assert!((was.value.look_at - is.value.look_at).length() < 1e-9);
     }
     harness.choose("Animate", "Import path…");
-    harness
-        .window
-        .get_by_label_contains("camera already has the");
+    harness.assert_says("camera already has the");
     let broken = harness.folder.path().join("broken.csv");
     std::fs::write(&broken, "time,x,y,z\n0,1,2,3\n0,1,2,3\n").expect("written");
     let kept = harness.scene().animation.keys.clone();
     harness.choose("Animate", "Import path…");
-    harness
-        .window
-        .get_by_label_contains("line 3: there are two lines for the time 0");
+    harness.assert_says("line 3: there are two lines for the time 0");
     assert_eq!(
         harness.scene().animation.keys,
         kept,
@@ -1019,9 +973,7 @@ fn paths_go_out_to_a_table_and_come_back() {
     open_presets(&mut harness);
     harness.click("Turntable");
     harness.choose("Animate", "Export path…");
-    harness
-        .window
-        .get_by_label_contains("circle.csv without interpolation and easing of the keys");
+    harness.assert_says("circle.csv without interpolation and easing of the keys");
 }
 
 /// A frame rendered on the command line equals the frame at the playhead in the window, byte by byte.
@@ -1029,9 +981,7 @@ fn paths_go_out_to_a_table_and_come_back() {
 fn a_frame_is_the_same_from_the_command_line_and_in_the_window() {
     let mut scene = flight();
     (scene.render.width, scene.render.height) = (160, 120);
-    let document = Document::of(scene);
-    let text = document.to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(scene);
     let frame = 77;
     let time = harness.scene().animation.time_of(frame);
     assert!(!harness.editor().is_dirty(), "opening changes nothing");
@@ -1106,9 +1056,7 @@ fn small_pictures_are_plain_renders_and_come_in_their_order() {
         sampling: glint::scene::Sampling::Centres,
         ..RenderRequest::of(&scene, 40, 30)
     };
-    let direct = render(&scene, &plain, &RenderControl::default())
-        .expect("whole")
-        .0;
+    let direct = picture(&scene, &plain).0;
     assert!(pictures.iter().all(|(_, image)| *image == direct));
 }
 

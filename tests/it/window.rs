@@ -3,15 +3,25 @@
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::RgbaImage;
 
-use crate::PATIENCE;
+use crate::program::{self, wait_until};
 
-/// A virtual display, which is stopped at the end of the test.
+/// Another program, which is stopped at the end of the test.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A virtual display.
 struct Display {
-    server: Child,
+    _server: Running,
     name: String,
 }
 
@@ -37,7 +47,7 @@ impl Display {
             .read_line(&mut line)
             .expect("the display's number");
         Self {
-            server,
+            _server: Running(server),
             name: format!(":{}", line.trim()),
         }
     }
@@ -68,16 +78,9 @@ impl Display {
     }
 }
 
-impl Drop for Display {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
-    }
-}
-
-/// The program, which is stopped at the end of the test.
+/// The program, in a folder of its own.
 struct Program {
-    child: Child,
+    child: Running,
     folder: tempfile::TempDir,
 }
 
@@ -88,13 +91,14 @@ impl Program {
             .args(words)
             .spawn()
             .expect("the program starts");
+        let child = Running(child);
         let program = Self { child, folder };
-        wait_for("the window", || {
+        wait_until("the window", || {
             !display
                 .tool("xdotool", &["search", "--name", "^Glint"])
                 .is_empty()
         });
-        wait_for("the first picture", || is_violet(middle(&display.look())));
+        wait_until("the first picture", || is_violet(middle(&display.look())));
         // Only a mapped window takes the focus, and there is no window manager to give it.
         let window = display.tool("xdotool", &["search", "--name", "^Glint"]);
         let window = window.lines().next().expect("a window").to_owned();
@@ -102,7 +106,7 @@ impl Program {
         // Move the pointer out of the picture, which would show the name of what it hovers; a display without
         // clients forgets the pointer's position.
         display.tool("xdotool", &["mousemove", "1270", "792"]);
-        wait_for("rest", || {
+        wait_until("rest", || {
             let before = display.look();
             std::thread::sleep(Duration::from_millis(500));
             changed(&before, &display.look()) == 0
@@ -112,23 +116,16 @@ impl Program {
 
     fn end(&mut self) -> ExitStatus {
         let mut status = None;
-        wait_for("the end", || {
-            status = self.child.try_wait().expect("asked");
+        wait_until("the end", || {
+            status = self.child.0.try_wait().expect("asked");
             status.is_some()
         });
         status.expect("ended")
     }
 }
 
-impl Drop for Program {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
-
 fn command(display: &Display, folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+    let mut command = program::glint(&[]);
     command
         .current_dir(folder)
         .env("DISPLAY", &display.name)
@@ -137,14 +134,6 @@ fn command(display: &Display, folder: &Path) -> Command {
         .env("XDG_DATA_HOME", folder)
         .stdout(Stdio::null());
     command
-}
-
-fn wait_for(what: &str, mut is_true: impl FnMut() -> bool) {
-    let start = Instant::now();
-    while !is_true() {
-        assert!(start.elapsed() < PATIENCE, "{what} never came");
-        std::thread::sleep(Duration::from_millis(50));
-    }
 }
 
 /// The colour in the middle of the picture area, which is inside the demo's violet sphere.
@@ -172,32 +161,32 @@ fn the_window_shows_the_demo_follows_keys_and_closes() {
     let mut program = Program::start(&display, &[]);
     let start = display.look();
     display.key("o");
-    wait_for("the orthographic picture", || {
+    wait_until("the orthographic picture", || {
         changed(&start, &display.look()) > 50_000
     });
     display.key("p");
-    wait_for("the perspective picture", || {
+    wait_until("the perspective picture", || {
         changed(&start, &display.look()) < 500
     });
     display.tool("xdotool", &["keydown", "w"]);
     std::thread::sleep(Duration::from_millis(300));
     display.tool("xdotool", &["keyup", "w"]);
-    wait_for("the flight", || changed(&start, &display.look()) > 50_000);
+    wait_until("the flight", || changed(&start, &display.look()) > 50_000);
     display.key("ctrl+z");
-    wait_for("the way back", || changed(&start, &display.look()) < 500);
+    wait_until("the way back", || changed(&start, &display.look()) < 500);
     display.key("h");
-    wait_for("the high-res picture", || {
+    wait_until("the high-res picture", || {
         changed(&start, &display.look()) > 2_000
     });
     display.key("Escape");
-    wait_for("the live view", || changed(&start, &display.look()) < 500);
+    wait_until("the live view", || changed(&start, &display.look()) < 500);
     // The first Escape only says how to quit.
     display.key("Escape");
     display.key("Escape");
-    wait_for("the question", || changed(&start, &display.look()) > 50_000);
+    wait_until("the question", || changed(&start, &display.look()) > 50_000);
     // The next key does not quit either.
     display.key("Return");
-    wait_for("the window again", || {
+    wait_until("the window again", || {
         changed(&start, &display.look()) < 500
     });
     display.key("ctrl+q");
@@ -220,8 +209,8 @@ fn a_killed_program_loses_no_edit() {
                 && path.to_string_lossy().contains("unsaved")
         })
     };
-    wait_for("the autosave", || kept(program.folder.path()).is_some());
-    program.child.kill().expect("killed");
+    wait_until("the autosave", || kept(program.folder.path()).is_some());
+    program.child.0.kill().expect("killed");
     program.end();
     let text =
         std::fs::read_to_string(kept(program.folder.path()).expect("kept")).expect("readable");
@@ -240,12 +229,10 @@ fn a_killed_program_loses_no_edit() {
         "a picture of the window leaves the unsaved work alone"
     );
     assert!(kept(program.folder.path()).is_some());
-    program.child = command(&display, program.folder.path())
-        .arg(scene)
-        .spawn()
-        .expect("starts");
+    let child = command(&display, program.folder.path()).arg(scene).spawn();
+    program.child = Running(child.expect("starts"));
     let marker = |screen: &RgbaImage| screen.get_pixel(307, 326).0[..3] == [255, 255, 0];
-    wait_for("the recovered picture", || {
+    wait_until("the recovered picture", || {
         let screen = display.look();
         is_violet(middle(&screen)) && !marker(&screen)
     });
@@ -272,6 +259,7 @@ fn a_missing_system_library_ends_in_a_picture() {
             .stderr(log)
             .spawn()
             .expect("the program starts");
+        let child = Running(child);
         let mut program = Program { child, folder };
         let status = program.end();
         let said = std::fs::read_to_string(program.folder.path().join("log")).expect("readable");
@@ -327,9 +315,9 @@ fn the_window_takes_its_own_picture() {
     assert!(String::from_utf8_lossy(&bad.stderr).contains("the folder none does not exist"));
 }
 
-/// A Wayland compositor without a screen, which is stopped at the end of the test.
+/// A Wayland compositor without a screen.
 struct Compositor {
-    server: Child,
+    _server: Running,
     /// The folder of its socket.
     folder: tempfile::TempDir,
 }
@@ -348,17 +336,13 @@ impl Compositor {
             .stderr(Stdio::null())
             .spawn()
             .expect("weston is installed (Debian package weston)");
-        let compositor = Self { server, folder };
-        let socket = compositor.folder.path().join(Self::SOCKET);
-        wait_for("the compositor", || socket.exists());
+        let socket = folder.path().join(Self::SOCKET);
+        let compositor = Self {
+            _server: Running(server),
+            folder,
+        };
+        wait_until("the compositor", || socket.exists());
         compositor
-    }
-}
-
-impl Drop for Compositor {
-    fn drop(&mut self) {
-        let _ = self.server.kill();
-        let _ = self.server.wait();
     }
 }
 

@@ -4,16 +4,16 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use glint::image::{Image, render};
+use glint::image::Image;
 use glint::lab::Study;
 use glint::plan::RenderRequest;
 use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
-use glint::trace::RenderControl;
 use glint::worker::{
     Activity, BUDGET, Event, Frame, LiveJob, Pace, StillJob, ThumbnailJob, Worker,
 };
 
 use crate::PATIENCE;
+use crate::pictures::picture;
 use crate::program::wait_until;
 
 fn live(revision: u64, scene: &Arc<Scene>, side: u32) -> LiveJob {
@@ -95,13 +95,7 @@ fn many_submissions_end_in_the_last_ones_picture() {
             .all(|pair| pair[0].revision <= pair[1].revision),
         "never backwards"
     );
-    let direct = render(
-        &last,
-        &RenderRequest::sized(300, 300),
-        &RenderControl::default(),
-    )
-    .expect("not stopped")
-    .0;
+    let direct = picture(&last, &RenderRequest::sized(300, 300)).0;
     assert_eq!(*frames.last().expect("one").image, direct);
 }
 
@@ -113,14 +107,9 @@ fn refinement_traces_every_pixel_once_and_ends_byte_equal() {
     let frames = wait_for(&worker, |frame| frame.step == 1);
     let finished = frames.last().expect("one");
     assert_eq!(finished.cost.rays.camera, 640 * 640);
-    let (direct, cost) = render(
-        &scene,
-        &RenderRequest::sized(640, 640),
-        &RenderControl::default(),
-    )
-    .expect("not stopped");
+    let (direct, rays) = picture(&scene, &RenderRequest::sized(640, 640));
     assert_eq!(*finished.image, direct);
-    assert_eq!(finished.cost.rays, cost.rays);
+    assert_eq!(finished.cost.rays, rays);
 }
 
 #[test]
@@ -208,13 +197,7 @@ fn a_picture_that_is_to_be_saved_outlives_edits() {
     });
     assert_eq!(events, [Event::Saved(path.clone())]);
     let saved = ::image::open(&path).expect("a picture").to_rgba8();
-    let direct = render(
-        &slow,
-        &RenderRequest::sized(256, 256),
-        &RenderControl::default(),
-    )
-    .expect("not stopped")
-    .0;
+    let direct = picture(&slow, &RenderRequest::sized(256, 256)).0;
     assert_eq!(
         saved.into_raw(),
         direct.pixels.concat(),

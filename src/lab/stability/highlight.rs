@@ -3,7 +3,7 @@
 use super::map::{Axis, Map, Tries, normal_and_perpendicular, scattered};
 use super::subject::MapSubject;
 use crate::plan::exponent;
-use crate::scene::{HighlightMethod, Method as _};
+use crate::scene::HighlightMethod;
 use crate::simd::Vec3;
 
 const EXPONENTS: [f64; 7] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
@@ -14,28 +14,17 @@ const HALF_LEVEL: f64 = 0.5 / 255.0;
 
 /// One map per method. A failure is an error of more than half a level.
 pub fn maps(effort: u32) -> Vec<Map> {
-    HighlightMethod::ALL
-        .iter()
-        .map(|method| {
-            let across = Axis::new("exponent", &EXPONENTS);
-            Map::measure(
-                (
-                    MapSubject::Highlight,
-                    "off by more than half a level of 255",
-                ),
-                (
-                    method.id.to_owned(),
-                    method.value == HighlightMethod::default(),
-                ),
-                (across, Axis::one("highlight")),
-                |p, _| {
-                    let tries =
-                        (0..TRIES * u64::from(effort)).filter_map(|n| fails(method.value, n, p));
-                    Tries::count(tries)
-                },
-            )
-        })
-        .collect()
+    Map::of_methods(
+        (
+            MapSubject::Highlight,
+            "off by more than half a level of 255",
+        ),
+        (Axis::new("exponent", &EXPONENTS), Axis::one("highlight")),
+        |method, p, _| {
+            let tries = (0..TRIES * u64::from(effort)).filter_map(|n| fails(method, n, p));
+            Tries::count(tries)
+        },
+    )
 }
 
 fn fails(method: HighlightMethod, number: u64, p: f64) -> Option<bool> {

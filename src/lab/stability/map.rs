@@ -5,6 +5,7 @@ use std::iter::Sum;
 use glam::DVec3;
 
 use super::subject::MapSubject;
+use crate::scene::{Method, MethodInfo};
 
 /// Scale factors for a scene of size one.
 const SCALES: [f64; 12] = [
@@ -132,6 +133,20 @@ impl Map {
             up,
             cells,
         }
+    }
+
+    /// Measures every method of a setting, as [`Self::measure`] does.
+    pub fn of_methods<M: Method + Default>(
+        what: (MapSubject, &'static str),
+        (across, up): (Axis, Axis),
+        tries_at: impl Fn(M, f64, f64) -> Tries,
+    ) -> Vec<Self> {
+        let measured = M::ALL.iter().map(|MethodInfo { value, id, .. }| {
+            let method = ((*id).to_owned(), *value == M::default());
+            let axes = (across.clone(), up.clone());
+            Self::measure(what, method, axes, |x, y| tries_at(*value, x, y))
+        });
+        measured.collect()
     }
 
     /// The sum of all tries.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::map::{Axis, Map, Tries, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{PackedSphere, Primitive as _, Ray};
-use crate::scene::{Method as _, Methods, SphereMethod};
+use crate::scene::{Methods, SphereMethod};
 use crate::simd::Vec3;
 
 /// Distances in radii. For larger ones, a ray's own coordinates are too coarse for the sphere.
@@ -16,28 +16,17 @@ const TRIES: u64 = 400;
 /// One map per method. A failure is a hit by a ray that passes the sphere, or a miss by one that does not. Rays
 /// within a tenth of a radius of the silhouette are not tried.
 pub fn maps(effort: u32) -> Vec<Map> {
-    let methods = SphereMethod::ALL.iter();
-    methods
-        .map(|method| {
-            let across = Axis::new("radii away", &DISTANCES);
-            Map::measure(
-                (
-                    MapSubject::Sphere,
-                    "hit where the ray passes by or missed where it hits",
-                ),
-                (
-                    method.id.to_owned(),
-                    method.value == SphereMethod::default(),
-                ),
-                (across, scale_axis()),
-                |distance, scale| {
-                    let tries = (0..TRIES * u64::from(effort))
-                        .map(|n| fails(method.value, n, distance, scale));
-                    Tries::count(tries)
-                },
-            )
-        })
-        .collect()
+    Map::of_methods(
+        (
+            MapSubject::Sphere,
+            "hit where the ray passes by or missed where it hits",
+        ),
+        (Axis::new("radii away", &DISTANCES), scale_axis()),
+        |method, distance, scale| {
+            let tries = 0..TRIES * u64::from(effort);
+            Tries::count(tries.map(|n| fails(method, n, distance, scale)))
+        },
+    )
 }
 
 fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Tip};
-use crate::scene::{Method as _, Methods, TriangleMethod};
+use crate::scene::{Methods, TriangleMethod};
 use crate::simd::Vec3;
 
 /// Tries per cell for a first look.
@@ -16,31 +16,20 @@ const INSIDE: DVec3 = DVec3::new(0.11, -0.07, 0.05);
 /// One map per method.
 pub fn maps(effort: u32) -> Vec<Map> {
     let ball = ball();
-    let methods = TriangleMethod::ALL.iter();
-    methods
-        .map(|method| {
-            Map::measure(
-                (
-                    MapSubject::Triangle,
-                    "ray from inside a closed mesh that hits nothing",
-                ),
-                (
-                    method.id.to_owned(),
-                    method.value == TriangleMethod::default(),
-                ),
-                (offset_axis(), scale_axis()),
-                |away, scale| {
-                    let mesh: Vec<PackedTriangle<f32>> =
-                        ball.iter().map(|&face| placed(face, away, scale)).collect();
-                    let origin =
-                        Vec3::<f32>::from_dvec3((INSIDE + OFFSET_DIRECTION * away) * scale);
-                    let tries = (0..TRIES * u64::from(effort))
-                        .filter_map(|n| leaks(method.value, &mesh, origin, n));
-                    Tries::count(tries)
-                },
-            )
-        })
-        .collect()
+    Map::of_methods(
+        (
+            MapSubject::Triangle,
+            "ray from inside a closed mesh that hits nothing",
+        ),
+        (offset_axis(), scale_axis()),
+        |method, away, scale| {
+            let mesh: Vec<PackedTriangle<f32>> =
+                ball.iter().map(|&face| placed(face, away, scale)).collect();
+            let origin = Vec3::<f32>::from_dvec3((INSIDE + OFFSET_DIRECTION * away) * scale);
+            let tries = 0..TRIES * u64::from(effort);
+            Tries::count(tries.filter_map(|n| leaks(method, &mesh, origin, n)))
+        },
+    )
 }
 
 /// Returns whether the ray leaks out of the mesh; `None` if the target gives no direction.

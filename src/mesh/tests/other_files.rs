@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 
-use super::solid::{binary_stl, embedded_gltf, text_stl};
+use super::solid::{binary_stl, embedded_gltf, gltf_with, text_stl};
 use super::{Sample, marks_of_mesh};
 
 /// Programs that write in one pass do not know the number of triangles in advance, and leave a placeholder.
@@ -121,13 +121,12 @@ fn ply_strips_are_triangles() {
 fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
     let json = embedded_gltf("");
     let expected = Sample::new("m.gltf", &json).triangles();
-    let with = |more: &str| json.replacen('{', &format!("{{{more},"), 1);
     // An image in a format of an extension, and an animation of a texture.
-    let texture = with(r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}]"#);
-    let pointer = with(
+    let texture = gltf_with(r#""textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}]"#);
+    let pointer = gltf_with(
         r#""animations":[{"channels":[{"sampler":0,"target":{"path":"pointer"}}],"samplers":[]}]"#,
     );
-    let pointed = with(
+    let pointed = gltf_with(
         r#""animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"pointer"}}],"samplers":[]}]"#,
     );
     let attribute = json.replacen(r#""POSITION":0"#, r#""POSITION":0,"_BATCHID":0"#, 1);
@@ -136,7 +135,7 @@ fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
         r#""primitives":[{"attributes":{}},"#,
         1,
     );
-    let lights = with(r#""extensionsUsed":["KHR_lights_punctual"]"#);
+    let lights = gltf_with(r#""extensionsUsed":["KHR_lights_punctual"]"#);
     for (text, note) in [
         (texture, Some("its textures are left out")),
         (pointer, Some("its animations are left out")),
@@ -158,14 +157,9 @@ fn what_is_only_about_looks_or_programs_does_not_keep_gltf_from_being_read() {
 #[test]
 fn what_gltf_and_mtl_files_show_otherwise_is_told() {
     let looks = r#"{"alphaMode":"BLEND","emissiveFactor":[1,1,0.8],"name":"gold""#;
-    let gltf = embedded_gltf("")
+    let gltf = gltf_with(r#""extensionsUsed":["KHR_node_visibility"]"#)
         .replace(r#"{"name":"gold""#, looks)
-        .replace("[1,0.5,0,1]", "[1,0.5,0,0.1]")
-        .replacen(
-            r#""asset""#,
-            r#""extensionsUsed":["KHR_node_visibility"],"asset""#,
-            1,
-        );
+        .replace("[1,0.5,0,1]", "[1,0.5,0,0.1]");
     let notes = Sample::new("m.gltf", &gltf).notes().join("; ");
     let obj = "mtllib m.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     let sample = Sample::new("m.obj", obj);
@@ -201,9 +195,8 @@ fn strips_and_fans_of_gltf_are_triangles() {
 #[test]
 fn extensions_about_looks_do_not_matter() {
     let with = |name: &str| {
-        let json = embedded_gltf("");
-        let start = format!(r#"{{"extensionsRequired":["{name}"],"#);
-        Sample::new("m.gltf", json.replacen('{', &start, 1))
+        let required = format!(r#""extensionsRequired":["{name}"]"#);
+        Sample::new("m.gltf", gltf_with(&required))
     };
     assert_eq!(with("KHR_materials_unlit").triangles().faces().len(), 20);
     assert_eq!(
@@ -238,18 +231,16 @@ fn a_gltf_file_is_another_one_once_its_numbers_are_written() {
 
 #[test]
 fn what_is_left_out_of_a_file_is_told() {
-    let json = embedded_gltf("");
-    assert!(Sample::new("m.gltf", &json).notes().is_empty());
-    let with = json.replacen(
-        '{',
-        r#"{"cameras":[{"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"zfar":2,"znear":1}}],"#,
-        1,
+    let sample = Sample::new("m.gltf", embedded_gltf(""));
+    assert!(sample.notes().is_empty());
+    let with = gltf_with(
+        r#""cameras":[{"type":"orthographic","orthographic":{"xmag":1,"ymag":1,"zfar":2,"znear":1}}]"#,
     );
     assert_eq!(
         Sample::new("m.gltf", with).notes(),
         ["its cameras are left out"]
     );
-    let with = json.replacen('{', r#"{"extensionsUsed":["EXT_mesh_gpu_instancing"],"#, 1);
+    let with = gltf_with(r#""extensionsUsed":["EXT_mesh_gpu_instancing"]"#);
     let told = "meshes repeated by EXT_mesh_gpu_instancing appear only once";
     assert_eq!(Sample::new("m.gltf", with).notes(), [told]);
     let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";

@@ -169,6 +169,11 @@ pub fn embedded_gltf(node: &str) -> String {
     gltf_json(node, &uri)
 }
 
+/// A glTF file with this further member at its top.
+pub fn gltf_with(member: &str) -> String {
+    embedded_gltf("").replacen('{', &format!("{{{member},"), 1)
+}
+
 pub fn glb(json: &str, chunk: &[u8]) -> Vec<u8> {
     let json = format!("{json}{}", &"   "[..(4 - json.len() % 4) % 4]);
     let mut bytes = b"glTF".to_vec();

@@ -68,9 +68,7 @@ fn a_file_that_is_there_is_replaced_once_that_is_meant() {
     harness.press(Modifiers::COMMAND, Key::S);
     let text = path.to_str().expect("plain");
     harness.type_name("Path (this desktop offers no file dialog)", text);
-    harness
-        .window
-        .get_by_label_contains("already exists. Replace it?");
+    harness.assert_says("already exists. Replace it?");
     let held = || std::fs::read_to_string(&path).expect("read");
     assert_eq!(held(), "theirs");
     harness.click("Replace it");
@@ -106,7 +104,7 @@ fn a_name_that_cannot_be_written_is_told_where_it_is_typed() {
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::S);
     let long = harness.folder.path().join("a".repeat(300));
     harness.type_name(field, long.to_str().expect("plain"));
-    harness.window.get_by_label_contains("File name too long");
+    harness.assert_says("File name too long");
     let short = harness.folder.path().join("short.ron");
     harness.type_name(field, short.to_str().expect("plain"));
     assert!(short.exists());
@@ -173,13 +171,11 @@ fn a_refused_file_is_shown_with_its_place_and_the_document_stays() {
     let answers = |folder: &std::path::Path| vec![(Ask::OpenScene, Some(folder.join("given.ron")))];
     let text = "Scene(\n    version: 1,\n    objects: [5],\n)\n";
     let mut harness = EditorHarness::with(answers, Some(text));
-    harness
-        .window
-        .get_by_label_contains("given.ron:3:15: expected Object(…)");
+    harness.assert_says("given.ron:3:15: expected Object(…)");
     assert_eq!(harness.scene(), &Scene::demo());
     harness.click("Dismiss");
     harness.press(Modifiers::COMMAND, Key::O);
-    harness.window.get_by_label_contains("given.ron:3:15");
+    harness.assert_says("given.ron:3:15");
     assert_eq!(harness.scene(), &Scene::demo());
 }
 
@@ -313,7 +309,7 @@ fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
     harness.click("Dismiss");
     harness.press(CTRL.plus(Modifiers::SHIFT), Key::E);
     let refusal = "\"Bunny\" cannot be shown, and no frame is made without it";
-    harness.window.get_by_label_contains(refusal);
+    harness.assert_says(refusal);
     assert!(
         harness
             .window
@@ -323,14 +319,13 @@ fn nothing_is_made_of_a_scene_with_a_mesh_that_is_gone() {
     );
     harness.press(Modifiers::NONE, Key::Escape);
     harness.choose("File", "Export farm job…");
-    harness.window.get_by_label_contains(refusal);
+    harness.assert_says(refusal);
     assert!(!harness.folder.path().join("job.yaml").exists());
 }
 
 #[test]
 fn a_window_that_rests_draws_nothing() {
-    let text = Document::of(Scene::demo()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::demo());
     let delay = |harness: &EditorHarness| {
         let output = &harness.window.output().viewport_output;
         output[&egui::ViewportId::ROOT].repaint_delay
@@ -369,8 +364,7 @@ fn povray_gets_what_is_on_show() {
 
 #[test]
 fn the_first_things_of_a_scene_are_brought_into_the_picture_in_the_step_that_imports_them() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::empty());
     let before = harness.scene().clone();
     let corners = |place: f64| format!("v {place} 0 0\nv {place} 900 0\nv {place} 0 900\n");
     for (name, place) in [("far.obj", 3000.0), ("near.obj", 100.0)] {
@@ -419,15 +413,14 @@ fn an_import_into_an_empty_scene_leaves_the_shot() {
 
 #[test]
 fn an_import_that_no_camera_can_see_whole_is_made_all_the_same() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
+    let mut harness = EditorHarness::on(Scene::empty());
     let before = harness.scene().camera.clone();
     let path = harness.folder.path().join("wide.obj");
     std::fs::write(&path, "v 9e11 0 0\nv -9e11 0 0\nv 0 9e11 0\nf 1 2 3\n").expect("written");
     harness.drop_file(path);
     assert_eq!(harness.scene().objects.len(), 1);
     assert_eq!(harness.scene().camera, before);
-    harness.window.get_by_label_contains("F frames them");
+    harness.assert_says("F frames them");
 }
 
 #[test]
@@ -446,15 +439,9 @@ fn unsaved_changes_survive_a_cancelled_open() {
 
 #[test]
 fn saving_works_from_within_a_field() {
-    let text = Document::of(Scene::empty()).to_text().expect("a text");
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text));
-    harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "position x")
-        .click();
-    harness.settle();
-    harness.window.event(Event::Text("12.5".to_owned()));
-    harness.settle();
+    let mut harness = EditorHarness::on(Scene::empty());
+    harness.put_cursor_into("position x");
+    harness.type_text("12.5");
     harness.press(CTRL, Key::S);
     harness.settle();
     assert!(!harness.editor().is_dirty());
@@ -483,7 +470,7 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     harness.choose("File", "Import mesh…");
     assert_eq!(harness.scene().objects.len(), before + 2);
     harness.click("tail");
-    harness.window.get_by_label_contains("2 triangles");
+    harness.assert_says("2 triangles");
     harness.click("Separate");
     assert_eq!(harness.scene().objects.len(), before + 3);
     harness.press(Modifiers::COMMAND, Key::Z);
@@ -491,7 +478,7 @@ fn a_mesh_is_imported_turned_and_taken_apart() {
     assert_eq!(harness.scene().objects.len(), before, "one step each");
     harness.choose("File", "Import mesh…");
     assert_eq!(harness.scene().objects.len(), before);
-    harness.window.get_by_label_contains("bad.stl");
+    harness.assert_says("bad.stl");
     harness.click("Triangle 1");
     harness.click("Join connected");
     assert_eq!(harness.scene().objects.len(), before - 5);
@@ -547,12 +534,7 @@ fn what_another_program_breaks_is_told_where_it_is() {
     harness.wait_for("what was written", |harness| {
         radius(harness.scene(), 0) == 31.5
     });
-    assert!(
-        harness
-            .window
-            .query_by_label_contains("given.ron:3:")
-            .is_none()
-    );
+    assert!(!harness.sees("given.ron:3:"));
 }
 
 #[test]
@@ -562,9 +544,7 @@ fn what_another_program_writes_is_read_anew_and_can_be_undone() {
         radius(harness.scene(), 0) == 31.5
     });
     assert!(!harness.editor().is_dirty());
-    harness
-        .window
-        .get_by_label_contains("changed by another program");
+    harness.assert_says("changed by another program");
     harness.press(CTRL, Key::Z);
     assert_eq!(radius(harness.scene(), 0), 20.0);
     assert!(harness.editor().is_dirty());
@@ -645,9 +625,7 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     harness.click("roof");
     harness.type_into("position x", "6");
     harness.press(CTRL, Key::S);
-    harness
-        .window
-        .get_by_label_contains("the contents of roof.obj are in the scene file now");
+    harness.assert_says("the contents of roof.obj are in the scene file now");
     let saved = |harness: &EditorHarness| {
         let path = harness.folder.path().join("given.ron");
         Document::load(&path).expect("valid").scene == **harness.editor().scene()
@@ -693,9 +671,7 @@ fn both_changed_one_is_asked_which_is_to_stay() {
     for answer in ["Keep mine", "Take theirs"] {
         let (mut harness, path) = changed_outside(edit);
         harness.wait_for("the question", is_asked);
-        harness
-            .window
-            .get_by_label_contains("2 objects changed: Sphere 1, Sphere 2");
+        harness.assert_says("2 objects changed: Sphere 1, Sphere 2");
         harness.click(answer);
         harness.press(CTRL, Key::S);
         assert!(!is_asked(&harness));
@@ -813,10 +789,7 @@ fn a_flight_that_is_still_recorded_is_asked_about() {
         None,
     );
     harness.press(Modifiers::NONE, Key::R);
-    harness.window.key_down(Key::W);
-    (0..40).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::W);
-    harness.settle();
+    harness.hold(Key::W, 40);
     assert!(harness.editor().timeline().recorded().is_some());
     harness.press(CTRL, Key::N);
     // Enter presses the default button.
@@ -868,9 +841,7 @@ fn work_that_was_left_is_taken_up_when_its_file_is_opened_later() {
     harness.drop_file(second);
     assert_eq!(radius(harness.scene(), 0), 31.5);
     assert!(harness.editor().is_dirty());
-    harness
-        .window
-        .get_by_label_contains("Glint ended with unsaved changes to");
+    harness.assert_says("Glint ended with unsaved changes to");
 }
 
 #[test]
@@ -919,13 +890,10 @@ fn a_typed_name_is_taken_before_the_click_that_ends_it_and_belongs_to_its_item()
         field.rect().center()
     };
     let at = name(&harness);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(at);
     harness.press(CTRL, Key::A);
-    harness.window.event(Event::Text("Ball".to_owned()));
-    harness.settle();
-    let eye = harness.window.get_by_label("Hide Sphere 1").rect().center();
+    harness.type_text("Ball");
+    let eye = harness.middle_of("Hide Sphere 1");
     harness.window.drag_at(eye);
     harness.window.step();
     harness.window.drop_at(eye);

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, vec2};
+use egui::{Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::editor::ItemKind;
@@ -12,15 +12,6 @@ use glint::scene::{Sampling, Scene, Shape, Sphere};
 use super::tools::{center, click, drop_at, place, pull};
 use crate::harness::{CTRL, EditorHarness, radius};
 use crate::timeline::animation;
-
-/// Clicks a number to edit it as text.
-fn put_cursor_into(harness: &mut EditorHarness, field: &str) {
-    let number = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, field);
-    number.click();
-    harness.settle();
-}
 
 #[test]
 fn a_drag_changes_the_radius_and_one_undo_brings_it_back() {
@@ -105,25 +96,21 @@ fn invalid_edits_are_refused_and_explained() {
     harness.press_button("Camera");
     harness.type_into("up x", "-0.25, -0.25, -0.93");
     assert_eq!(harness.scene(), &Scene::demo());
-    harness
-        .window
-        .get_by_label_contains("up must not be parallel to look_at");
+    harness.assert_says("up must not be parallel to look_at");
     harness.click("Dismiss");
-    assert!(harness.window.query_by_label_contains("parallel").is_none());
+    assert!(!harness.sees("parallel"));
 }
 
 #[test]
 fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
-    put_cursor_into(&mut harness, "radius");
-    harness.window.event(Event::Text("3".to_owned()));
-    harness.settle();
+    harness.put_cursor_into("radius");
+    harness.type_text("3");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene(), &Scene::demo());
     harness.press(Modifiers::NONE, Key::F2);
-    harness.window.event(Event::Text("q".to_owned()));
-    harness.settle();
+    harness.type_text("q");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene(), &Scene::demo());
     harness.window.get_by_label("Filter").focus();
@@ -144,8 +131,7 @@ fn a_label_brings_the_default_back() {
 #[test]
 fn the_inspector_says_what_the_scene_needs() {
     let mut harness = EditorHarness::new();
-    harness.window.get_by_label("Needs").click();
-    harness.settle();
+    harness.click("Needs");
     harness
         .window
         .get_by_label("reflected rays, up to 1 bounce");
@@ -169,11 +155,8 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
     // Whichever is cheapest today, the default is far more accurate than required.
     assert_ne!(harness.scene().render.antialias, Sampling::default());
     assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
-    harness.window.get_by_label("Needs").click();
-    harness.settle();
-    harness
-        .window
-        .get_by_label_contains("the cheapest within 50.0 dB");
+    harness.click("Needs");
+    harness.assert_says("the cheapest within 50.0 dB");
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene(), &small);
 }
@@ -249,7 +232,7 @@ fn panels_keep_their_width_while_numbers_change() {
 fn a_field_that_is_left_as_it_was_changes_nothing() {
     let mut harness = EditorHarness::new();
     for field in ["view angle", "distance", "yaw", "look_at x", "position y"] {
-        put_cursor_into(&mut harness, field);
+        harness.put_cursor_into(field);
         harness.press(Modifiers::NONE, Key::Enter);
         assert!(!harness.editor().is_dirty(), "{field}");
     }
@@ -260,9 +243,8 @@ fn escape_gives_a_typed_vector_up() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let before = harness.scene().objects[0].clone();
-    put_cursor_into(&mut harness, "center x");
-    harness.window.event(Event::Text("1, 2, 3".to_owned()));
-    harness.settle();
+    harness.put_cursor_into("center x");
+    harness.type_text("1, 2, 3");
     harness.press(Modifiers::NONE, Key::Escape);
     assert_eq!(harness.scene().objects[0], before);
 }
@@ -326,9 +308,8 @@ fn what_is_typed_is_a_step_of_its_own_though_a_drag_ends_it() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     let start = center(harness.scene(), 0);
-    put_cursor_into(&mut harness, "center x");
-    harness.window.event(Event::Text("5".to_owned()));
-    harness.settle();
+    harness.put_cursor_into("center x");
+    harness.type_text("5");
     harness.drag("center y", 40.0);
     let end = center(harness.scene(), 0);
     assert_eq!(end.x, 5.0);
@@ -423,7 +404,7 @@ fn what_is_typed_and_not_taken_is_told() {
         ("diffuse hex", "#12", "“#12” is not a color"),
     ] {
         harness.type_into(field, text);
-        harness.window.get_by_label_contains(words);
+        harness.assert_says(words);
     }
     assert_eq!(harness.scene(), &Scene::demo());
     harness.type_into("diffuse hex", "#0f0");
@@ -468,13 +449,8 @@ fn escape_gives_the_drag_of_a_number_up() {
 fn what_is_typed_for_several_is_for_all_however_it_is_ended() {
     let mut harness = EditorHarness::new();
     both_balls(&mut harness);
-    let field = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "center x");
-    field.click();
-    harness.settle();
-    harness.window.event(Event::Text("100".to_owned()));
-    harness.settle();
+    harness.put_cursor_into("center x");
+    harness.type_text("100");
     let away = harness.view().left_top() - vec2(4.0, 0.0);
     click(&mut harness, away, Modifiers::NONE);
     let [now, then] = [0, 1].map(|ball| center(harness.scene(), ball));
@@ -488,7 +464,7 @@ fn others_get_what_the_last_of_them_has_already() {
     let (x, other) = (center(harness.scene(), 1).x, center(harness.scene(), 0));
     // Enter in a field without a change confirms its value.
     for field in ["radius", "center x", "specular green"] {
-        put_cursor_into(&mut harness, field);
+        harness.put_cursor_into(field);
         harness.press(Modifiers::NONE, Key::Enter);
     }
     let scene = harness.scene();
@@ -499,7 +475,7 @@ fn others_get_what_the_last_of_them_has_already() {
     harness.press(CTRL, Key::Z);
     harness.press(CTRL, Key::Z);
     let before = harness.scene().clone();
-    put_cursor_into(&mut harness, "radius");
+    harness.put_cursor_into("radius");
     harness.press(Modifiers::NONE, Key::Tab);
     assert_eq!(*harness.scene(), before);
     harness.unfold("color pack");
@@ -552,9 +528,7 @@ fn a_change_of_a_pack_is_for_the_packs_of_all() {
 fn several_get_packs_of_their_own_and_the_last_that_shares_one_keeps_it() {
     let mut harness = EditorHarness::new();
     harness.click("Triangle 1");
-    let last = harness.window.get_by_label("Triangle 6");
-    last.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 6");
     harness.click("Make unique");
     let triangles = || harness.scene().objects.iter().skip(2).take(6);
     let packs: Vec<_> = triangles()
@@ -572,9 +546,7 @@ fn several_get_packs_of_their_own_and_the_last_that_shares_one_keeps_it() {
 fn several_packs_are_changed_as_one() {
     let mut harness = EditorHarness::new();
     harness.click("sphere 1");
-    let last = harness.window.get_by_label("plane");
-    last.click_modifiers(CTRL);
-    harness.settle();
+    harness.click_with(CTRL, "plane");
     assert_eq!(
         harness.editor().selection().indices(ItemKind::Pack).len(),
         2
@@ -591,9 +563,7 @@ fn several_packs_are_changed_as_one() {
 fn triangles_that_are_dragged_together_stay_as_they_are() {
     let mut harness = EditorHarness::new();
     harness.click("Triangle 1");
-    let last = harness.window.get_by_label("Triangle 6");
-    last.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 6");
     assert_eq!(harness.editor().selection().items().len(), 6);
     harness.drag("b x", 20.0);
     let by = center(harness.scene(), 2) - center(&Scene::demo(), 2);
@@ -615,9 +585,7 @@ fn a_sum_may_be_typed() {
     harness.type_into("radius", "(2 + 1,5) * 4");
     assert_eq!(radius(harness.scene(), 0), 14.0);
     harness.type_into("radius", "7 *");
-    harness
-        .window
-        .get_by_label_contains("“7 *” is not a number");
+    harness.assert_says("“7 *” is not a number");
     assert_eq!(radius(harness.scene(), 0), 14.0);
 }
 

@@ -33,10 +33,7 @@ fn on_ruler(harness: &EditorHarness, seconds: f32) -> Pos2 {
 fn the_second_key_goes_where_there_was_no_time_yet() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::K);
-    let at = on_ruler(&harness, 3.0);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(on_ruler(&harness, 3.0));
     let shown = harness.editor().shown_time();
     assert!((2.8..3.2).contains(&shown), "{shown}");
     harness.press(Modifiers::NONE, Key::K);
@@ -49,17 +46,11 @@ fn a_view_that_was_flown_to_is_kept_for_the_next_key() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::K);
     let fly = |harness: &mut EditorHarness| {
-        harness.window.key_down(Key::D);
-        (0..30).for_each(|_| harness.window.step());
-        harness.window.key_up(Key::D);
-        harness.settle();
+        harness.hold(Key::D, 30);
         harness.editor().shown().camera.clone()
     };
     let seek = |harness: &mut EditorHarness, seconds: f32| {
-        let at = on_ruler(harness, seconds);
-        harness.window.drag_at(at);
-        harness.window.drop_at(at);
-        harness.settle();
+        harness.click_at(on_ruler(harness, seconds));
     };
     let flown = fly(&mut harness);
     seek(&mut harness, 3.0);
@@ -77,10 +68,7 @@ fn a_value_that_is_set_on_a_key_between_frames_is_seen() {
     let mut harness = window(&[0.0, 0.34, 1.02]);
     harness.press(Modifiers::NONE, Key::CloseBracket);
     assert!((harness.editor().shown_time() - 0.3).abs() < 1e-9);
-    harness.window.key_down(Key::D);
-    (0..30).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::D);
-    harness.settle();
+    harness.hold(Key::D, 30);
     let flown = harness.editor().shown().camera.clone();
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(
@@ -104,9 +92,7 @@ fn selected_keys_are_copied_to_the_playhead_and_frames_are_typed() {
     assert_eq!(harness.editor().undo_label(), Some("Copy keys"));
     harness.press(CTRL, Key::D);
     assert_eq!(times(&harness), [0.0, 1.0, 3.0]);
-    harness
-        .window
-        .get_by_label_contains("move it to where they should go");
+    harness.assert_says("move it to where they should go");
     // The playhead is on the frame nearest to a key.
     let mut harness = window(&[0.0, 0.34, 1.0]);
     harness.click("Key 2");
@@ -193,10 +179,7 @@ fn give_up_a_drag(held: Modifiers) {
 fn all_selected_keys_are_dragged_in_the_view() {
     let mut harness = animation(&[(0.0, -60.0), (2.0, 40.0)]);
     // From farther back, the flight is in view.
-    harness.window.key_down(Key::S);
-    (0..60).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::S);
-    harness.settle();
+    harness.hold(Key::S, 60);
     let place = |harness: &EditorHarness, key: &str| {
         let key = harness.window.get_by_label(key);
         key.rect().center()
@@ -328,10 +311,10 @@ fn the_still_picture_stops_what_plays() {
 fn the_window_of_exports_follows_the_scene() {
     let mut harness = window(&[0.0, 1.0]);
     harness.press(crate::harness::CTRL.plus(Modifiers::SHIFT), Key::E);
-    harness.window.get_by_label_contains("11 frames");
+    harness.assert_says("11 frames");
     harness.click("Key 2");
     harness.type_into("time", "3");
-    harness.window.get_by_label_contains("31 frames");
+    harness.assert_says("31 frames");
 }
 
 #[test]
@@ -341,7 +324,7 @@ fn home_over_the_line_of_time_leaves_the_camera() {
     harness.window.hover_at(above);
     harness.settle();
     // Zooms in, then shows everything again.
-    let key = |harness: &EditorHarness| harness.window.get_by_label("Key 2").rect().center().x;
+    let key = |harness: &EditorHarness| harness.middle_of("Key 2").x;
     let before = key(&harness);
     harness.window.event(egui::Event::Zoom(2.0));
     harness.settle();
@@ -450,23 +433,19 @@ fn what_changes_no_camera_leaves_no_shot() {
 fn a_ready_made_flight_says_what_it_replaces() {
     let mut harness = window(&[0.0, 1.0]);
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("turntable".to_owned()));
-    harness.settle();
+    harness.type_text("turntable");
     harness.press(Modifiers::NONE, Key::Enter);
     let words = "Turntable has replaced 2 keys of the camera; undo brings them back";
-    harness.window.get_by_label_contains(words);
+    harness.assert_says(words);
     harness.press(CTRL, Key::Z);
-    assert!(harness.window.query_by_label_contains(words).is_none());
+    assert!(!harness.sees(words));
     assert_eq!(times(&harness), [0.0, 1.0]);
 }
 
 #[test]
 fn the_playhead_stays_where_it_is_in_a_flight_that_is_stretched() {
     let mut harness = window(&[0.0, 4.0]);
-    let at = on_ruler(&harness, 1.0);
-    harness.window.drag_at(at);
-    harness.window.drop_at(at);
-    harness.settle();
+    harness.click_at(on_ruler(&harness, 1.0));
     let before = harness.editor().shown_time();
     assert!((before - 1.0).abs() < 0.2, "{before}");
     harness.type_into("length of the flight", "8");

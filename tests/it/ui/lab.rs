@@ -51,7 +51,7 @@ fn the_lab_measures_shows_a_dot_and_adopts_it_in_one_step() {
     );
     harness.click("Fastest below");
     harness.window.get_by_label("Lab picture");
-    harness.window.get_by_label_contains("Leave Lab: ");
+    harness.assert_says("Leave Lab: ");
     assert!(
         harness
             .window
@@ -98,9 +98,7 @@ fn the_lab_shows_where_formulas_break_and_warns_of_those_in_use() {
     };
     for (method, warned) in [("edges", true), ("watertight", false)] {
         let at = row(&harness, method).expect("a row");
-        harness.window.drag_at(at);
-        harness.window.drop_at(at);
-        harness.settle();
+        harness.click_at(at);
         let mut warnings = harness
             .window
             .query_all_by_label_contains("Your scene uses this");

@@ -1,6 +1,6 @@
 //! The outliner: filtering, hiding, renaming, adding.
 
-use egui::{Event, Key, Modifiers, PointerButton};
+use egui::{Key, Modifiers, MouseWheelUnit, PointerButton};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glint::scene::{Scene, Shape, Sphere};
@@ -22,10 +22,7 @@ fn the_outliner_filters_hides_renames_and_reorders() {
     harness.press(Modifiers::ALT, Key::ArrowDown);
     assert_eq!(harness.scene().objects[1].name, "Sphere 1");
     harness.press(Modifiers::NONE, Key::F2);
-    harness
-        .window
-        .event(Event::Text("Sphere of glass".to_owned()));
-    harness.settle();
+    harness.type_text("Sphere of glass");
     harness.press(Modifiers::NONE, Key::Enter);
     assert_eq!(harness.scene().objects[1].name, "Sphere of glass");
     harness.press(Modifiers::COMMAND, Key::D);
@@ -59,7 +56,7 @@ fn where_groups_are_not_listed_nothing_is_dragged_into_one() {
     harness.window.get_by_label("Filter").type_text("sphere");
     harness.settle();
     let drag = |harness: &mut EditorHarness| {
-        let row = |name: &str| harness.window.get_by_label(name).rect().center();
+        let row = |name: &str| harness.middle_of(name);
         let (from, to) = (row("Sphere 1"), row("Sphere 2") + egui::vec2(0.0, 4.0));
         pull(harness, from, to, PointerButton::Primary, Modifiers::NONE);
         drop_at(harness, to, PointerButton::Primary, Modifiers::NONE);
@@ -80,7 +77,7 @@ fn arrows_walk_from_row_to_row_and_turn_no_camera_meanwhile() {
     let mut harness = EditorHarness::new();
     let camera = harness.scene().camera.clone();
     // With the pointer over the list, after a click there.
-    let row = harness.window.get_by_label("Sphere 1").rect().center();
+    let row = harness.middle_of("Sphere 1");
     click(&mut harness, row, Modifiers::NONE);
     assert_eq!(harness.selected(), ["Sphere 1"]);
     harness.press(Modifiers::NONE, Key::ArrowDown);
@@ -108,7 +105,7 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
     }
     let mut harness = EditorHarness::on(scene);
     harness.click("Fold Balls");
-    let row = harness.window.get_by_label("Balls").rect().center();
+    let row = harness.middle_of("Balls");
     click(&mut harness, row, Modifiers::NONE);
     assert_eq!(harness.selected(), ["Sphere 1", "Sphere 2"]);
     harness.press(Modifiers::NONE, Key::ArrowDown);
@@ -126,7 +123,7 @@ fn arrows_know_folded_groups_and_what_is_filtered() {
     harness.window.get_by_label("Filter").type_text("triangle");
     harness.settle();
     harness.press(Modifiers::NONE, Key::Enter);
-    let row = harness.window.get_by_label("Triangle 3").rect().center();
+    let row = harness.middle_of("Triangle 3");
     click(&mut harness, row, Modifiers::NONE);
     harness.press(Modifiers::NONE, Key::ArrowDown);
     assert_eq!(harness.selected(), ["Triangle 4"]);
@@ -207,18 +204,11 @@ fn a_name_that_is_edited_out_of_sight_is_left() {
     let mut harness = EditorHarness::on(scene);
     harness.click("Sphere 1");
     harness.press(Modifiers::NONE, Key::F2);
-    harness.window.event(Event::Text("Other".to_owned()));
-    harness.settle();
-    let row = harness.window.get_by_label("Plane").rect().center();
+    harness.type_text("Other");
+    let row = harness.middle_of("Plane");
     hover(&mut harness, row);
     let roll = |harness: &mut EditorHarness, lines: f32| {
-        harness.window.event(Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: egui::vec2(0.0, lines),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers: Modifiers::NONE,
-        });
+        harness.turn_wheel(MouseWheelUnit::Line, lines);
         // The scrolling is animated.
         harness.window.run_steps(40);
         harness.settle();
@@ -263,17 +253,14 @@ fn what_wears_the_same_pack_is_selected_lights_too_and_the_rest_stays_so() {
     let mut harness = EditorHarness::new();
     let same_pack = |harness: &mut EditorHarness| {
         harness.press(CTRL, Key::K);
-        harness
-            .window
-            .event(Event::Text("select all with this".to_owned()));
-        harness.settle();
+        harness.type_text("select all with this");
         harness.press(Modifiers::NONE, Key::Enter);
     };
     harness.click("Light 1");
     same_pack(&mut harness);
     assert_eq!(harness.selected(), ["Light 2", "Light 1"]);
     harness.click("Plane");
-    let row = harness.window.get_by_label("Triangle 2").rect().center();
+    let row = harness.middle_of("Triangle 2");
     click(&mut harness, row, Modifiers::SHIFT);
     let before = harness.selected().len();
     same_pack(&mut harness);
@@ -288,23 +275,17 @@ fn what_wears_the_same_pack_is_selected_lights_too_and_the_rest_stays_so() {
 #[test]
 fn things_are_deleted_with_the_packs_that_they_wear() {
     let mut harness = EditorHarness::new();
-    let with_control = |harness: &mut EditorHarness, name: &str| {
-        harness.window.get_by_label(name).click_modifiers(CTRL);
-        harness.settle();
-    };
     harness.click("Sphere 1");
-    with_control(&mut harness, "sphere 1");
+    harness.click_with(CTRL, "sphere 1");
     harness.press(Modifiers::NONE, Key::Delete);
     let scene = harness.scene();
     assert!(scene.objects.len() == 8 && !scene.color_packs.contains_key("sphere 1"));
     // Shift adds an item of another list.
     harness.click("Light 1");
-    let shifted = harness.window.get_by_label("Sphere 2");
-    shifted.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Sphere 2");
     assert_eq!(harness.editor().selection().items().len(), 2);
     harness.click("sphere 2");
-    with_control(&mut harness, "tetrahedron");
+    harness.click_with(CTRL, "tetrahedron");
     let packs = harness.scene().color_packs.len();
     harness.press(CTRL, Key::D);
     assert_eq!(harness.scene().color_packs.len(), packs + 2);

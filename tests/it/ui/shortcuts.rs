@@ -105,10 +105,7 @@ fn keys_of_shortcuts_do_not_fly_when_control_is_let_go_first() {
     assert_eq!(harness.scene().camera, start);
     harness.window.event(key(false, Modifiers::NONE));
     harness.window.step();
-    harness.window.key_down(Key::A);
-    (0..5).for_each(|_| harness.window.step());
-    harness.window.key_up(Key::A);
-    harness.settle();
+    harness.hold(Key::A, 5);
     assert!(harness.scene().camera != start, "pressed anew, it flies");
 }
 
@@ -146,8 +143,7 @@ fn a_shortcut_is_one_however_long_control_was_held_before() {
 /// Types into the finder and runs the first match.
 fn find(harness: &mut EditorHarness, text: &str) {
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text(text.to_owned()));
-    harness.settle();
+    harness.type_text(text);
     harness.press(Modifiers::NONE, Key::Enter);
 }
 

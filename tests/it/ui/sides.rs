@@ -17,10 +17,6 @@ fn text(scene: Scene) -> String {
     Document { header, scene }.to_text().expect("a text")
 }
 
-fn middle(harness: &EditorHarness, label: &str) -> Pos2 {
-    harness.window.get_by_label(label).rect().center()
-}
-
 fn carry(harness: &mut EditorHarness, from: Pos2, to: Pos2) {
     pull(harness, from, to, PointerButton::Primary, NONE);
     drop_at(harness, to, PointerButton::Primary, NONE);
@@ -31,7 +27,7 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
     harness.window.event(Event::ModifiersChanged(CTRL));
-    let second = middle(&harness, "Sphere 2");
+    let second = harness.middle_of("Sphere 2");
     hover(&mut harness, second);
     button(&mut harness, second, PointerButton::Primary, true, CTRL);
     button(&mut harness, second, PointerButton::Primary, false, CTRL);
@@ -61,54 +57,47 @@ fn a_group_is_listed_hidden_renamed_and_moved_as_one() {
     assert_eq!(harness.editor().selection().items().len(), 2);
     harness.click("Triangle 1");
     for (modifiers, count) in [(Modifiers::SHIFT, 3), (CTRL, 1), (CTRL, 3)] {
-        let group = middle(&harness, "Group 1");
+        let group = harness.middle_of("Group 1");
         click(&mut harness, group, modifiers);
         assert_eq!(harness.editor().selection().items().len(), count);
     }
-    let at = middle(&harness, "Group 1");
+    let at = harness.middle_of("Group 1");
     (0..60).for_each(|_| harness.window.step());
     for _ in 0..2 {
         harness.window.drag_at(at);
         harness.window.drop_at(at);
     }
     harness.settle();
-    harness.window.event(Event::Text("Balls".to_owned()));
-    harness.settle();
+    harness.type_text("Balls");
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Balls", "Balls", ""]);
     // The key renames groups, too.
     harness.click("Balls");
     harness.press(NONE, Key::F2);
-    harness.window.event(Event::Text("Toys".to_owned()));
-    harness.settle();
+    harness.type_text("Toys");
     harness.press(NONE, Key::Enter);
     assert_eq!(groups(&harness), ["Toys", "Toys", ""]);
     harness.press(CTRL, Key::Z);
     // Renaming does not merge two groups.
     harness.click("Triangle 1");
-    let second = harness.window.get_by_label("Triangle 2");
-    second.click_modifiers(Modifiers::SHIFT);
-    harness.settle();
+    harness.click_with(Modifiers::SHIFT, "Triangle 2");
     harness.press(CTRL, Key::G);
     harness.type_name("group", "Balls");
-    harness
-        .window
-        .get_by_label_contains("There is another group named “Balls”");
+    harness.assert_says("There is another group named “Balls”");
     assert_eq!(groups(&harness), ["Balls", "Balls", "Group 1"]);
     harness.click("Dismiss");
     // A folded group stays folded when it is renamed.
     harness.click("Fold Group 1");
     harness.click("Group 1");
     harness.press(NONE, Key::F2);
-    harness.window.event(Event::Text("Balls".to_owned()));
-    harness.settle();
+    harness.type_text("Balls");
     harness.press(NONE, Key::Enter);
     harness.window.get_by_label("Unfold Group 1");
     harness.window.get_by_label("Fold Balls");
     harness.click("Dismiss");
     harness.press(CTRL, Key::Z);
     // An object dropped on a group's row becomes a member.
-    let (from, to) = (middle(&harness, "Plane"), middle(&harness, "Balls"));
+    let (from, to) = (harness.middle_of("Plane"), harness.middle_of("Balls"));
     carry(&mut harness, from, to);
     let plane = harness.scene().objects.iter();
     let mut plane = plane.filter(|object| object.name == "Plane");
@@ -143,9 +132,7 @@ fn in_the_picture_a_click_takes_a_group_and_another_one_goes_inside() {
     harness.click("Plane");
     (0..60).for_each(|_| harness.window.step());
     for _ in 0..2 {
-        harness.window.drag_at(ball);
-        harness.window.drop_at(ball);
-        harness.settle();
+        harness.click_at(ball);
     }
     assert_eq!(count(&harness), 1);
     // A drag moves the whole group.
@@ -166,7 +153,7 @@ fn packs_are_dragged_onto_rows_and_into_the_picture() {
     let pack =
         |harness: &EditorHarness, index: usize| harness.scene().objects[index].color_pack.clone();
     assert_eq!(pack(&harness, 0), "sphere 1");
-    let (from, to) = (middle(&harness, "plane"), middle(&harness, "Sphere 1"));
+    let (from, to) = (harness.middle_of("plane"), harness.middle_of("Sphere 1"));
     carry(&mut harness, from, to);
     assert_eq!(pack(&harness, 0), "plane");
     assert_eq!(harness.editor().undo_label(), Some("Assign plane"));
@@ -175,7 +162,7 @@ fn packs_are_dragged_onto_rows_and_into_the_picture() {
     assert_eq!(pack(&harness, 1), "plane");
     assert_eq!(pack(&harness, 0), "plane");
     // A light's marker can be given a color pack as well.
-    let to = middle(&harness, "Light 1");
+    let to = harness.middle_of("Light 1");
     carry(&mut harness, from, to);
     let marker = harness.scene().lights[0].marker.as_ref();
     assert_eq!(marker.expect("a marker").color_pack, "plane");
@@ -187,7 +174,7 @@ fn equal_packs_become_one() {
     let twin: ColorPack = scene.color_packs["sphere 1"].clone();
     scene.packs_mut().insert("twin".to_owned(), twin);
     scene.objects[1].color_pack = "twin".to_owned();
-    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&text(scene.clone())));
+    let mut harness = EditorHarness::on(scene.clone());
     harness.choose("Edit", "Merge equal packs");
     assert!(!harness.scene().color_packs.contains_key("twin"));
     assert_eq!(harness.scene().objects[1].color_pack, "sphere 1");
@@ -260,7 +247,7 @@ fn what_a_number_means_is_told_beside_the_panel_and_not_while_it_is_dragged() {
     assert!(shown.right() <= column.left(), "{shown:?} {column:?}");
     button(&mut harness, field, PointerButton::Primary, true, NONE);
     harness.window.step();
-    assert!(harness.window.query_by_label_contains(hint).is_none());
+    assert!(!harness.sees(hint));
     button(&mut harness, field, PointerButton::Primary, false, NONE);
 }
 
@@ -273,9 +260,7 @@ fn an_error_goes_when_the_same_is_tried_again() {
         .events
         .push(Event::Paste("nonsense".to_owned()));
     harness.settle();
-    harness
-        .window
-        .get_by_label_contains("The clipboard holds no");
+    harness.assert_says("The clipboard holds no");
     let light = r#"Light(name: "l", position: (1, 2, 3))"#;
     harness
         .window
@@ -322,8 +307,8 @@ fn keys_do_nothing_while_a_row_is_carried() {
     (0..60).for_each(|_| harness.window.step());
     let count = harness.scene().objects.len();
     let (from, to) = (
-        middle(&harness, "Sphere 2"),
-        middle(&harness, "Triangle 4") + egui::vec2(0.0, 4.0),
+        harness.middle_of("Sphere 2"),
+        harness.middle_of("Triangle 4") + egui::vec2(0.0, 4.0),
     );
     pull(&mut harness, from, to, PointerButton::Primary, NONE);
     harness.window.key_press(Key::Delete);
@@ -354,7 +339,7 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
     };
     // Below a row that is in no group: it leaves its own group, which stays where it was.
     let (from, to) = (
-        middle(&harness, &members[0]),
+        harness.middle_of(&members[0]),
         half(&harness, "Triangle 4", 0.8),
     );
     carry(&mut harness, from, to);
@@ -367,20 +352,26 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
     assert_eq!(item, there.map(Item::object), "it is what is selected");
     // Back again, above the remaining member.
     let (from, to) = (
-        middle(&harness, &members[0]),
+        harness.middle_of(&members[0]),
         half(&harness, &members[1], 0.2),
     );
     carry(&mut harness, from, to);
     assert_eq!(names(&harness, "Balls"), members);
     // The group itself, below a row; it cannot be dropped within another group.
-    let (from, to) = (middle(&harness, "Balls"), half(&harness, "Triangle 4", 0.8));
+    let (from, to) = (
+        harness.middle_of("Balls"),
+        half(&harness, "Triangle 4", 0.8),
+    );
     carry(&mut harness, from, to);
     assert_eq!(names(&harness, "Balls"), members);
     let objects = &harness.scene().objects;
     let there = objects.iter().position(|object| object.name == members[0]);
     assert_eq!(objects[there.expect("it") - 1].name, "Triangle 4");
     // Above a group, on the edge of its row.
-    let (from, to) = (middle(&harness, "Triangle 1"), half(&harness, "Balls", 0.1));
+    let (from, to) = (
+        harness.middle_of("Triangle 1"),
+        half(&harness, "Balls", 0.1),
+    );
     carry(&mut harness, from, to);
     let objects = &harness.scene().objects;
     let there = objects
@@ -389,11 +380,11 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
     assert_eq!(objects[there.expect("it") + 1].name, members[0]);
     assert_eq!(names(&harness, "Balls"), members);
     // A light is moved above or below another.
-    let (from, to) = (middle(&harness, "Light 1"), half(&harness, "Light 2", 0.2));
+    let (from, to) = (harness.middle_of("Light 1"), half(&harness, "Light 2", 0.2));
     let before = harness.scene().clone();
     carry(&mut harness, from, to);
     assert_eq!(harness.scene(), &before, "it stands there");
-    let (from, to) = (middle(&harness, "Light 1"), half(&harness, "Light 2", 0.8));
+    let (from, to) = (harness.middle_of("Light 1"), half(&harness, "Light 2", 0.8));
     carry(&mut harness, from, to);
     assert_eq!(harness.scene().lights[0].name, "Light 2");
 }
@@ -402,14 +393,9 @@ fn rows_are_dragged_out_of_groups_and_into_them_and_groups_go_with_all_members()
 fn tab_goes_from_a_value_to_the_next_one() {
     let mut harness = EditorHarness::new();
     harness.click("Picture");
-    let width = harness
-        .window
-        .get_by_role_and_label(Role::SpinButton, "width");
-    width.click();
-    harness.settle();
+    harness.put_cursor_into("width");
     for (text, key) in [("900", Key::Tab), ("700", Key::Enter)] {
-        harness.window.event(Event::Text(text.to_owned()));
-        harness.settle();
+        harness.type_text(text);
         harness.press(NONE, key);
     }
     let render = &harness.scene().render;
@@ -472,10 +458,10 @@ fn copies_stand_beside_each_other_and_are_told_where_nobody_sees_them() {
     let found = places(&harness, "Sphere");
     assert_eq!(found, [-600.0, 125.0, 225.0, 325.0]);
     let told = "The copy is outside the picture";
-    assert!(harness.window.query_by_label_contains(told).is_none());
+    assert!(!harness.sees(told));
     harness.click("Sphere 2");
     harness.press(CTRL, Key::D);
-    harness.window.get_by_label_contains(told);
+    harness.assert_says(told);
 }
 
 #[test]
@@ -492,7 +478,7 @@ fn shift_selects_what_is_listed_between_two_rows() {
         names.map(str::to_owned).collect()
     };
     let mut range = |from: &str, to: &str| {
-        let (from, to) = (middle(&harness, from), middle(&harness, to));
+        let (from, to) = (harness.middle_of(from), harness.middle_of(to));
         click(&mut harness, from, NONE);
         click(&mut harness, to, Modifiers::SHIFT);
         selected(&harness)
@@ -510,7 +496,7 @@ fn packs_are_put_above_and_below_others() {
     let before: Vec<String> = harness.scene().color_packs.keys().cloned().collect();
     let row = harness.window.get_by_label("sphere 1").rect();
     let (from, to) = (
-        middle(&harness, "plane"),
+        harness.middle_of("plane"),
         pos2(row.center().x, row.top() + 3.0),
     );
     carry(&mut harness, from, to);

@@ -1,6 +1,6 @@
 //! Mouse tools in the picture: clicks, handles, and the camera.
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, ViewportCommand, vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::{Item, Selection};
@@ -225,13 +225,7 @@ fn the_menu_is_about_what_is_there_also_where_that_is_not_known_yet() {
     harness.click("Sphere 2");
     let at = place(&harness, center(harness.scene(), 0));
     hover(&mut harness, at);
-    harness.window.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 1.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: NONE,
-    });
+    harness.turn_wheel(MouseWheelUnit::Line, 1.0);
     harness.window.step();
     button(&mut harness, at, PointerButton::Secondary, true, NONE);
     button(&mut harness, at, PointerButton::Secondary, false, NONE);
@@ -443,9 +437,7 @@ fn escape_leaves_one_thing_after_the_other() {
     assert_eq!(*harness.editor().selection(), Selection::Camera);
     harness.press(NONE, Key::Escape);
     assert!(harness.window.query_by_label("Quit now").is_none());
-    harness
-        .window
-        .get_by_label_contains("Esc once more asks whether to quit");
+    harness.assert_says("Esc once more asks whether to quit");
     harness.press(NONE, Key::Escape);
     harness.window.get_by_label("Quit now");
     harness.window.key_down(Key::Enter);
@@ -463,8 +455,7 @@ fn escape_leaves_one_thing_after_the_other() {
 fn what_is_pasted_by_its_name_is_pasted() {
     let mut harness = EditorHarness::new();
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("paste".to_owned()));
-    harness.settle();
+    harness.type_text("paste");
     harness.window.key_press(Key::Enter);
     harness.window.step();
     // The clipboard answers as soon as it is asked.
@@ -488,9 +479,7 @@ Object(name: "Gone", color_pack: "plane", shape: Mesh(file: "gone.ply"))"#;
     harness.window.event(Event::Paste(text.to_owned()));
     harness.settle();
     assert_eq!(harness.selected(), ["Gone"]);
-    harness
-        .window
-        .get_by_label_contains("\"Gone\" is not in the picture");
+    harness.assert_says("\"Gone\" is not in the picture");
     harness.click("Dismiss");
     harness.press(CTRL, Key::Z);
     harness.window.event(Event::Cut);
@@ -500,9 +489,7 @@ Object(name: "Gone", color_pack: "plane", shape: Mesh(file: "gone.ply"))"#;
         .window
         .event(Event::Paste("half a sentence".to_owned()));
     harness.settle();
-    harness
-        .window
-        .get_by_label_contains("The clipboard holds no objects or lights");
+    harness.assert_says("The clipboard holds no objects or lights");
     assert_eq!(harness.scene(), &Scene::demo());
 }
 
@@ -542,57 +529,44 @@ fn the_head_of_an_arrow_comes_before_a_ring_through_it() {
 fn everything_is_found_by_its_name() {
     let mut harness = EditorHarness::new();
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("here 2".to_owned()));
-    harness.settle();
+    harness.type_text("here 2");
     harness.press(NONE, Key::Enter);
     assert_eq!(harness.selected(), ["Sphere 2"]);
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("ortho".to_owned()));
-    harness.settle();
+    harness.type_text("ortho");
     harness.press(NONE, Key::Enter);
     assert_eq!(
         harness.scene().camera.projection,
         glint::scene::Projection::Orthographic
     );
-    assert!(
-        harness
-            .window
-            .query_by_label_contains("Enter runs the")
-            .is_none()
-    );
+    assert!(!harness.sees("Enter runs the"));
     // What is possible comes first: nothing is in a group yet.
     harness.click("Sphere 1");
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("group".to_owned()));
-    harness.settle();
+    harness.type_text("group");
     harness.press(NONE, Key::Enter);
     assert_eq!(harness.scene().objects[0].group, "Group 1");
     harness.press(CTRL, Key::Z);
     // The same for groups; a group is not grouped again.
     harness.click("Triangle 2");
-    let other = harness.window.get_by_label("Triangle 4");
-    other.click_modifiers(CTRL);
-    harness.settle();
+    harness.click_with(CTRL, "Triangle 4");
     for _ in 0..2 {
         harness.press(CTRL, Key::G);
     }
     harness.click("Sphere 1");
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("group 1".to_owned()));
-    harness.settle();
+    harness.type_text("group 1");
     harness.press(NONE, Key::Enter);
     assert_eq!(harness.selected(), ["Triangle 2", "Triangle 4"]);
     // Synonyms are found, too.
     for (word, name) in [("add ball", "Sphere 3"), ("cube", "Box 1")] {
         harness.press(CTRL, Key::K);
-        harness.window.event(Event::Text(word.to_owned()));
-        harness.settle();
+        harness.type_text(word);
         harness.press(NONE, Key::Enter);
         assert_eq!(harness.selected(), [name]);
     }
     harness.press(CTRL, Key::K);
-    harness.window.event(Event::Text("show clay".to_owned()));
-    harness.settle();
+    harness.type_text("show clay");
     harness.press(NONE, Key::Enter);
     harness.window.get_by_label("Leave Clay");
 }

@@ -1,15 +1,14 @@
 //! The viewport: modes, projections, flying.
 
-use egui::{Event, Key, Modifiers};
+use egui::{Event, Key, Modifiers, MouseWheelUnit};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
-use glint::image::render;
 use glint::plan::RenderRequest;
 use glint::scene::{Projection, Sampling, Scene};
-use glint::trace::RenderControl;
 
 use super::tools::{button, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
+use crate::pictures::picture;
 
 #[test]
 fn the_window_opens_on_the_demo_and_shows_its_picture() {
@@ -20,9 +19,7 @@ fn the_window_opens_on_the_demo_and_shows_its_picture() {
         sampling: Sampling::ADAPTIVE,
         ..RenderRequest::sized(shown.width as u32, shown.height as u32)
     };
-    let direct = render(harness.scene(), &smooth, &RenderControl::default())
-        .expect("not stopped")
-        .0;
+    let direct = picture(harness.scene(), &smooth).0;
     assert!(
         shown == direct,
         "the live view and a plain render are the same bytes"
@@ -79,12 +76,8 @@ fn keys_switch_projection_markers_and_resolution() {
 fn the_still_picture_stays_until_the_scene_changes() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::H);
-    let still = render(
-        harness.scene(),
-        &RenderRequest::still(harness.scene()),
-        &RenderControl::default(),
-    );
-    assert!(harness.picture() == still.expect("not stopped").0);
+    let still = RenderRequest::still(harness.scene());
+    assert!(harness.picture() == picture(harness.scene(), &still).0);
     harness.click("Sphere 2");
     assert_eq!(
         harness.editor().mode,
@@ -126,7 +119,7 @@ fn flying_is_per_second_and_one_step() {
 fn the_right_button_looks_around() {
     let mut harness = EditorHarness::new();
     let start = harness.editor().orientation();
-    let middle = harness.window.get_by_label("Live view").rect().center();
+    let middle = harness.middle_of("Live view");
     let button = |pressed, pos| Event::PointerButton {
         pos,
         button: egui::PointerButton::Secondary,
@@ -270,13 +263,7 @@ fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
         let middle = harness.view().center();
         harness.window.hover_at(middle);
         harness.window.step();
-        harness.window.event(Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: egui::vec2(0.0, 1.0),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers: Modifiers::NONE,
-        });
+        harness.turn_wheel(MouseWheelUnit::Line, 1.0);
         (0..40).for_each(|_| harness.window.step());
         harness.settle();
     };
@@ -300,13 +287,7 @@ fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     let at = harness.view().center();
     hover(&mut harness, at);
     let turn = |harness: &mut EditorHarness, by: f32| {
-        harness.window.event(Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: egui::vec2(0.0, by),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers: Modifiers::NONE,
-        });
+        harness.turn_wheel(MouseWheelUnit::Line, by);
         // Longer than one notch takes.
         (0..10).for_each(|_| harness.window.step());
         harness.settle();
@@ -356,13 +337,7 @@ fn the_wheel_changes_the_flying_speed_while_one_looks_around() {
     let secondary = egui::PointerButton::Secondary;
     button(&mut harness, at, secondary, true, Modifiers::NONE);
     hover(&mut harness, at + egui::vec2(20.0, 0.0));
-    harness.window.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: egui::vec2(0.0, 100.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
+    harness.turn_wheel(MouseWheelUnit::Point, 100.0);
     (0..10).for_each(|_| harness.window.step());
     button(&mut harness, at, secondary, false, Modifiers::NONE);
     harness.settle();
