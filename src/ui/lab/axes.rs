@@ -8,7 +8,10 @@ use egui_plot::{GridInput, GridMark};
 /// Axes that span more decades than this have no marks, as these would be less than a pixel apart.
 pub const MAX_DECADES: f64 = 40.0;
 /// Distances in points at which grid lines appear and are as bright as text: they stay fainter than what is measured.
-pub const GRID_FADE: Rangef = Rangef::new(8.0, 1200.0);
+pub const GRID_FADE: Rangef = Rangef {
+    min: 8.0,
+    max: 1200.0,
+};
 
 fn marks_at(input: &GridInput, digits: &[u32]) -> Vec<GridMark> {
     let (low, high) = (input.bounds.0.floor() as i32, input.bounds.1.ceil() as i32);
