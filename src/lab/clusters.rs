@@ -82,8 +82,8 @@ fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
     costs
 }
 
-/// Milliseconds and RMSE of the first way of each group that can be chosen for a scene; NaN for the others, and for
-/// doubtful ones. Excluded are other engines, smaller pictures, and models that skip less or show other things, which
+/// Milliseconds and RMSE of the first way of each group that can be chosen for a scene; NaN for the others. Doubtful
+/// times count as their slowest run: a way that is faster even then is worth choosing. Excluded are other engines, smaller pictures, and models that skip less or show other things, which
 /// serve for comparison only.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
     let mut costs = costs_of_dots(study);
@@ -96,6 +96,8 @@ pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
         } = dot.candidate;
         if family == Family::Referee || model != Model::Needed || upscale > 1 {
             *cost = (f64::NAN, f64::NAN);
+        } else if dot.is_doubtful() {
+            cost.0 = dot.times.iter().copied().fold(0.0, f64::max);
         }
     }
     costs
@@ -113,6 +115,7 @@ fn is_same((a, c): (Timing, ErrorMetrics), (b, d): (Timing, ErrorMetrics)) -> bo
 mod tests {
     use std::sync::Arc;
 
+    use super::super::pareto_front::cheapest_within;
     use super::*;
     use crate::scene::Scene;
 
@@ -156,5 +159,15 @@ mod tests {
         let apart = [vec![0, 1], vec![2], vec![3], vec![4], vec![5]];
         assert_eq!(clusters(&study), apart);
         assert_eq!(front_of(&study), [0, 3]);
+    }
+
+    #[test]
+    fn a_doubtful_way_is_chosen_if_it_is_the_fastest_even_in_its_slowest_run() {
+        let noisy = ([2.0, 3.0, 9.0], 1e-3);
+        for (certain, chosen) in [(10.0, 0), (8.0, 1)] {
+            let study = study(&[noisy, ([certain; 3], 0.9e-3)]);
+            let costs = costs_of_choices(&study);
+            assert_eq!(cheapest_within(&costs, 2e-3, f64::INFINITY), Some(chosen));
+        }
     }
 }

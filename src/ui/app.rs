@@ -275,6 +275,11 @@ impl App {
 }
 
 impl eframe::App for App {
+    /// Panels may leave gaps of a pixel when the window is scaled.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         if self.pictures.poll(ctx, &mut self.editor) {
             // Keep the window open, so that the error can be read.
@@ -358,11 +363,13 @@ impl eframe::App for App {
         }
         self.finder
             .show(&ctx, &self.editor, &self.files.recent, &mut out);
-        self.why.show(&ctx, &self.editor, self.layout.aspect);
         // Still pictures cannot be flown through: moving the camera would discard them.
         let (place, flight_area) = picture;
         let is_still = self.editor.mode == Mode::HighRes || self.lab.is_looking();
         let screen = Screen::new(&self.editor.shown().camera, place.rect);
+        let explained = (&self.editor, self.layout.aspect);
+        self.why
+            .show(&ctx, explained, |point| screen.as_ref()?.place(point));
         if let Some(screen) = screen.filter(|_| !is_still) {
             self.why
                 .mark(&ui.painter().with_clip_rect(place.rect), |point| {

@@ -198,7 +198,8 @@ impl Finder {
     }
 }
 
-/// Returns everything whose name contains all the words: possible things first, then those that begin with the text.
+/// Returns everything whose name contains all the words: possible things first, then those that begin with the text,
+/// then those in which words begin with all of its words.
 fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Match> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -216,11 +217,23 @@ fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) ->
     // A scene may have very many things.
     let room = MAX_MATCHES.saturating_sub(matches.len());
     matches.extend(scene_items(editor, matches_query).take(room));
-    matches.sort_by_key(|entry| {
-        let begins = entry.name.to_lowercase().starts_with(&text);
-        (!entry.is_enabled, !begins)
-    });
+    matches.sort_by_key(|entry| (!entry.is_enabled, rank(&entry.name, &text)));
     matches
+}
+
+/// Returns how well a name matches what is searched for, the best first: 0 if it begins with the text, 1 if words of it
+/// begin with all words of the text.
+fn rank(name: &str, text: &str) -> u8 {
+    let name = name.to_lowercase();
+    let begins_word = |word: &str| {
+        let mut own_words = name.split(|letter: char| !letter.is_alphanumeric());
+        own_words.any(|own| own.starts_with(word))
+    };
+    match () {
+        () if name.starts_with(text) => 0,
+        () if text.split_whitespace().all(begins_word) => 1,
+        () => 2,
+    }
 }
 
 fn commands<'a>(
@@ -387,5 +400,18 @@ mod tests {
         for (name, _) in ADDITION_ALIASES {
             assert!(additions().any(|entry| entry.name == name), "{name}");
         }
+    }
+
+    #[test]
+    fn words_that_begin_so_come_before_words_that_hold_it() {
+        let mut names = [
+            "Record the flight",
+            "Add Light",
+            "Light 2",
+            "Open example: flight",
+        ];
+        names.sort_by_key(|name| rank(name, "light"));
+        assert_eq!(names[..2], ["Light 2", "Add Light"]);
+        assert_eq!(rank("Add Light", "li add"), 1);
     }
 }

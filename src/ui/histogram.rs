@@ -42,9 +42,7 @@ impl Levels {
             return;
         };
         let colors = palette(ui.ctx());
-        let size = vec2(SIZE.0, SIZE.1 + TEXT_HEIGHT) + vec2(GRID, GRID) * 2.0;
-        let corner = picture.left_bottom() + vec2(GRID, -GRID - size.y);
-        let frame = Rect::from_min_size(corner, size);
+        let frame = frame_in(picture);
         let painter = ui.painter().with_clip_rect(picture);
         let line = Stroke::new(1.0, colors.line);
         let fill = colors.panel.gamma_multiply(0.9);
@@ -59,6 +57,18 @@ impl Levels {
         let at = graph.left_bottom() + vec2(0.0, GRID / 2.0);
         painter.text(at, egui::Align2::LEFT_TOP, words, font, colors.text);
     }
+}
+
+/// Returns where the histogram is in a picture.
+fn frame_in(picture: Rect) -> Rect {
+    let size = vec2(SIZE.0, SIZE.1 + TEXT_HEIGHT) + vec2(GRID, GRID) * 2.0;
+    let corner = picture.left_bottom() + vec2(GRID, -GRID - size.y);
+    Rect::from_min_size(corner, size)
+}
+
+/// Returns the part of a picture to the right of the histogram.
+pub fn right_of_histogram(picture: Rect) -> Rect {
+    picture.with_min_x(frame_in(picture).right())
 }
 
 /// Returns the curve of a channel: the square root of the counts, so that small counts are visible next to large ones.

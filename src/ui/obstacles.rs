@@ -3,7 +3,7 @@
 use super::commands::Command;
 use super::dialogs::Ask;
 use crate::editor::{Editor, Item, ItemKind, Selection};
-use crate::scene::{Scene, Shape};
+use crate::scene::{Object, Scene, Shape};
 
 /// Returns why the command would do nothing now; `None` if it would do something.
 pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
@@ -43,9 +43,16 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             Some("it is already a group")
         }
         Command::Group | Command::PutDown => {
-            let mut items = editor.selection().items().iter();
-            let has = items.any(|item| item.kind == ItemKind::Object);
-            (!has).then_some("no object is selected")
+            let items = editor.selection().items().iter();
+            let objects = items.filter(|item| item.kind == ItemKind::Object);
+            let objects = objects.filter_map(|item| editor.scene().objects.get(item.index));
+            let mut objects = objects.peekable();
+            let is_endless = |object: &Object| object.shape.bounds().is_none();
+            match command {
+                _ if objects.peek().is_none() => Some("no object is selected"),
+                Command::PutDown if objects.all(is_endless) => Some("planes go on forever"),
+                _ => None,
+            }
         }
         Command::Ungroup => {
             let items = editor.selection().items().iter();

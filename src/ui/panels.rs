@@ -8,6 +8,7 @@ use egui::{
 
 use super::app::App;
 use super::commands::Command;
+use super::histogram::right_of_histogram;
 use super::layout::Below;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, TRACKS, WIDE_WINDOW, palette};
@@ -204,10 +205,15 @@ impl App {
             if badge(ui, place, aspect.name()) {
                 self.layout.aspect = Aspect::All;
             }
-            if aspect == Aspect::Cost {
-                legend::show(ui, place.rect);
+            let free = if self.layout.histogram {
+                right_of_histogram(place.rect)
             } else {
-                legend::show_words(ui, place.rect, aspect.meaning());
+                place.rect
+            };
+            if aspect == Aspect::Cost {
+                legend::show(ui, free);
+            } else {
+                legend::show_words(ui, free, aspect.meaning());
             }
         }
         if let Some((_, seconds)) = self.editor.timeline().recorded() {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Context, Grid, Painter, Pos2, RichText, Sense, Ui, Window, vec2};
+use egui::{Color32, Context, Grid, Painter, Pos2, Rect, RichText, Sense, Ui, Window, vec2};
 use glam::DVec3;
 
 use super::theme::{GRID, ROW, palette};
@@ -92,7 +92,13 @@ impl Why {
     }
 
     /// Shows the answer once it is known. It follows changes of the scene, but not while something moves.
-    pub fn show(&mut self, ctx: &Context, editor: &Editor, aspect: Aspect) {
+    /// `on_screen` projects the explained point.
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        (editor, aspect): (&Editor, Aspect),
+        on_screen: impl FnOnce(DVec3) -> Option<Pos2>,
+    ) {
         if let Some(Ok(answer)) = self.waiting.take() {
             self.answer = Some(answer);
         }
@@ -111,7 +117,9 @@ impl Why {
             .collapsible(false)
             .default_width(WIDTH);
         if !std::mem::replace(&mut self.is_placed, true) {
-            window = window.current_pos(beside_pointer(ctx));
+            let asked = self.asked.as_ref();
+            let at = asked.and_then(|(origin, direction, _)| on_screen(origin + direction));
+            window = window.current_pos(beside(ctx.content_rect(), at));
         }
         window.open(&mut is_open).show(ctx, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
@@ -128,16 +136,12 @@ impl Why {
     }
 }
 
-/// Returns a position of the window where it does not cover the explained point.
-fn beside_pointer(ctx: &Context) -> Pos2 {
-    let (room, at) = (
-        ctx.content_rect(),
-        ctx.input(|input| input.pointer.latest_pos()),
-    );
+/// Returns a position of the window where it does not cover the explained point, if there is room on either side of it.
+fn beside(room: Rect, at: Option<Pos2>) -> Pos2 {
     let at = at.unwrap_or(room.center());
     let (left, right) = (at.x - WIDTH - POINT_DISTANCE, at.x + POINT_DISTANCE);
     let x = if left > room.left() { left } else { right };
-    Pos2::new(x, room.top() + POINT_DISTANCE)
+    Pos2::new(x.min(room.right() - WIDTH), room.top() + POINT_DISTANCE)
 }
 
 /// Shows the colour of the picture if it differs from the explained one.

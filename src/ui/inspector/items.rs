@@ -1,6 +1,6 @@
 //! The properties of lights, objects and color packs.
 
-use egui::{Id, Ui};
+use egui::{AtomExt as _, Id, RichText, Ui};
 
 use glam::DVec3;
 
@@ -351,7 +351,9 @@ fn used_by(ui: &mut Ui, scene: &Scene, name: &str, out: &mut UiRequests) {
     }
     for item in users {
         let name = item.name(scene).unwrap_or_default();
-        let button = egui::Button::new((icons::text(icons::of_item(scene, item)), name))
+        // Long names are truncated, not the icon.
+        let shown = RichText::new(name).atom_shrink(true);
+        let button = egui::Button::new((icons::text(icons::of_item(scene, item)), shown))
             .frame_when_inactive(false)
             .truncate();
         if ui

@@ -1,6 +1,6 @@
 //! Titles of the inspected items, with editable names.
 
-use egui::{Align2, Id, RichText, TextEdit, Ui};
+use egui::{Align2, Id, Label, RichText, TextEdit, Ui};
 use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Edit, Item};
@@ -13,7 +13,7 @@ pub fn title(ui: &mut Ui, icon: MaterialIcon, name: &str) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
         ui.label(icons::text(icon));
-        ui.label(RichText::new(name).heading());
+        ui.add(Label::new(RichText::new(name).heading()).truncate());
     });
 }
 

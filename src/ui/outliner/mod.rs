@@ -157,13 +157,14 @@ impl Outliner {
     }
 
     fn show_filter(&mut self, ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-        let buttons = if self.filter.is_empty() { 1.0 } else { 2.0 };
+        // As many buttons as were there before the text changed in this frame, or the list would be too wide.
+        let is_filtered = !self.filter.is_empty();
+        let buttons = if is_filtered { 2.0 } else { 1.0 };
         let width = ui.available_width() - (ROW + GRID) * buttons;
         let field = TextEdit::singleline(&mut self.filter).hint_text("Filter");
         ui.add_sized([width, ROW], field.align(egui::Align2::LEFT_CENTER))
             .accessible_name("Filter");
-        if !self.filter.is_empty() && icons::button(ui, icons::CLOSE, "Clear the filter").clicked()
-        {
+        if is_filtered && icons::button(ui, icons::CLOSE, "Clear the filter").clicked() {
             self.clear_filter();
         }
         let add = icons::button(ui, icons::ADD, "Add to scene");
