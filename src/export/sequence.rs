@@ -183,22 +183,32 @@ impl Sequence {
         Ok(manifest.is_valid(&file, &fingerprint))
     }
 
-    /// Whether the last frame shows the same as the first: played in a loop, the picture would then stand still for a
-    /// frame.
+    /// Whether the last frame shows the same as the first, but not as the one before it: played in a loop, the picture
+    /// would then stand still for a frame.
     pub fn is_loop(&self) -> bool {
-        let (Some(first), Some(last)) = (self.frames.iter().next(), self.frames.last()) else {
+        let count = self.frames.count();
+        let mut frames = self.frames.iter();
+        let (Some(first), Some(before), Some(last)) = (
+            frames.next(),
+            frames.nth(count.saturating_sub(3)),
+            frames.next(),
+        ) else {
             return false;
         };
-        let (first, last) = (self.shown(first), self.shown(last));
-        if self.frames.count() < 3 || !last.camera.is_like(&first.camera) {
-            return false;
-        }
-        let last = Scene {
-            camera: first.camera.clone(),
-            ..Scene::clone(&last)
-        };
+        let first = self.shown(first);
         let fingerprint_of = |scene: &Scene| fingerprint(scene, self.format).ok();
-        fingerprint_of(&first).is_some_and(|first| fingerprint_of(&last) == Some(first))
+        let own = fingerprint_of(&first);
+        let is_like_first = |frame: u64| {
+            let shown = self.shown(frame);
+            let with_its_camera = Scene {
+                camera: first.camera.clone(),
+                ..Scene::clone(&shown)
+            };
+            shown.camera.is_like(&first.camera)
+                && own.is_some()
+                && fingerprint_of(&with_its_camera) == own
+        };
+        is_like_first(last) && !is_like_first(before)
     }
 
     /// Writes a frame: the output of `encode`, which returns how long the frame took to trace, goes to a new file,
@@ -253,6 +263,11 @@ mod tests {
         assert_eq!(scene.animation.frame_count(), 29);
         assert!(is_loop(&scene, "1-29") && !is_loop(&scene, "1-28"));
         scene.animation_mut().keys.pop();
+        assert!(!is_loop(&scene, "1-20"));
+        // What stands still all the time is no loop.
+        for key in &mut scene.animation_mut().keys {
+            key.value = camera.clone();
+        }
         assert!(!is_loop(&scene, "1-20"));
     }
 

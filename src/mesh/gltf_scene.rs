@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use glam::{DMat4, DQuat, Vec3};
-use gltf::json::Root;
+use gltf::json::mesh::MorphTarget;
 use gltf::json::validation::Checked;
+use gltf::json::{Index, Root};
 use gltf::material::AlphaMode;
 use gltf::mesh::{Mode, Primitive};
 use gltf::scene::Transform;
@@ -215,8 +216,9 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
 }
 
 /// Works around the `gltf` crate: it panics if the accessor of positions is missing, and refuses positions without
-/// bounds, which are not needed here and which some exporters omit. It also refuses primitives without positions, and
-/// application-specific attributes, which are legal.
+/// bounds, which are not needed here and which some exporters omit. It also refuses primitives without positions,
+/// application-specific attributes, and accessors without data, which stand for zeros, all of which are legal. Among
+/// morph targets, which are left out, the latter are common.
 fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
     for mesh in &mut root.meshes {
         for primitive in &mut mesh.primitives {
@@ -229,8 +231,24 @@ fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
         mesh.primitives
             .retain(|primitive| primitive.attributes.contains_key(&positions));
     }
-    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    for primitive in primitives {
+    let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let targets = primitives().filter_map(|primitive| primitive.targets.as_ref());
+    let offsets = targets.flatten().flat_map(|target| {
+        let MorphTarget {
+            positions,
+            normals,
+            tangents,
+        } = target;
+        [*positions, *normals, *tangents]
+    });
+    for index in offsets.flatten() {
+        if let Some(accessor) = root.accessors.get_mut(index.value())
+            && accessor.sparse.is_none()
+        {
+            accessor.buffer_view.get_or_insert(Index::new(0));
+        }
+    }
+    for primitive in primitives() {
         let positions = Checked::Valid(Semantic::Positions);
         let Some(index) = primitive.attributes.get(&positions) else {
             continue;

@@ -206,6 +206,23 @@ fn extensions_about_looks_do_not_matter() {
 }
 
 #[test]
+fn morph_targets_without_data_are_left_out_like_others() {
+    let json = embedded_gltf("");
+    let expected = Sample::new("m.gltf", &json).triangles();
+    let zeros = r#""accessors":[{"componentType":5126,"type":"VEC3","count":12},"#;
+    let with = json
+        .replace(r#""accessors":["#, zeros)
+        .replace(r#""POSITION":0"#, r#""POSITION":1"#)
+        .replace(
+            r#""indices":1"#,
+            r#""indices":2,"targets":[{"POSITION":0}]"#,
+        );
+    let sample = Sample::new("m.gltf", with);
+    assert_eq!(sample.triangles(), expected);
+    assert_eq!(sample.notes(), ["its morph targets are left out"]);
+}
+
+#[test]
 fn without_a_scene_all_nodes_are_shown() {
     let json = embedded_gltf("");
     let expected = Sample::new("m.gltf", &json).triangles();
