@@ -1,6 +1,6 @@
 //! The row of controls above the chart: tabs, measuring, axes and limits.
 
-use egui::{Button, DragValue, Label, RichText, Ui};
+use egui::{Button, DragValue, Id, Label, RichText, Ui};
 
 use super::super::commands::Command;
 use super::super::menu_entry::on_click;
@@ -124,13 +124,19 @@ impl Lab {
 
     fn show_bounds(&mut self, ui: &mut Ui) {
         let costs = self.study.as_deref().map(costs_of_choices);
-        // Keeps each button with its limit when the row wraps.
+        // Keeps each button with its limit when the row wraps, which a nested row does not do by itself.
         let mut limit = |words: &str, hint: &str, value: DragValue, name: &str| {
+            let id = Id::unique(words);
+            let last_width = ui.data(|data| data.get_temp::<f32>(id));
+            if last_width.is_some_and(|width| ui.available_size_before_wrap().x < width) {
+                ui.end_row();
+            }
             let row = ui.horizontal(|ui| {
                 let button = ui.add_enabled(costs.is_some(), Button::new(words));
                 ui.add(value).accessible_name(name);
                 button.hint(hint).clicked()
             });
+            ui.data_mut(|data| data.insert_temp(id, row.response.rect.width()));
             row.inner
         };
         let hint = "Choose the fastest dot whose error is no larger than this";

@@ -1,6 +1,6 @@
 //! The tab of the stability maps: where formulas fail, and where the open scene is on these maps.
 
-use egui::{Align2, Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
+use egui::{Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
 
 use super::super::theme::{GRID, ROW, palette};
 use super::{heat, ramp};
@@ -135,12 +135,19 @@ impl Stability {
 /// Shows the colour scale.
 fn show_scale(ui: &mut Ui, width: f32) {
     let (row, _) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
-    let words = "Share of trials that fail";
     let small = TextStyle::Small.resolve(ui.style());
     let color = palette(ui.ctx()).muted;
-    let at = row.left_center();
-    ui.painter()
-        .text(at, Align2::LEFT_CENTER, words, small, color);
+    let room = width - BAR_WIDTH - 2.0 * LABEL_WIDTH;
+    for words in ["Share of trials that fail", "Failing"] {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(words.to_owned(), small.clone(), color);
+        if galley.size().x <= room {
+            let at = row.left_center() - vec2(0.0, galley.size().y / 2.0);
+            ui.painter().galley(at, galley, color);
+            break;
+        }
+    }
     let size = vec2(BAR_WIDTH, GRID);
     let middle = row.right_center() - vec2(BAR_WIDTH / 2.0 + LABEL_WIDTH, 0.0);
     ramp::show_bar(ui, Rect::from_center_size(middle, size));
