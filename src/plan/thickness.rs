@@ -60,7 +60,8 @@ impl Faces<'_> {
         let mut depths = vec![f64::INFINITY; self.triangles.len()];
         for (node, least) in self.bvh.nodes.iter().zip(found) {
             for face in node.members() {
-                depths[face as usize] = least;
+                let depth = &mut depths[face as usize];
+                *depth = depth.min(least);
             }
         }
         depths
