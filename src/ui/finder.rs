@@ -199,7 +199,7 @@ impl Finder {
 }
 
 /// Returns everything whose name contains all the words: possible things first, then those that begin with the text,
-/// then those in which words begin with all of its words.
+/// then those in which words begin with all of its words, the shortest first.
 fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) -> Vec<Match> {
     let text = text.trim().to_lowercase();
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -221,18 +221,16 @@ fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) ->
     matches
 }
 
-/// Returns how well a name matches what is searched for, the best first: 0 if it begins with the text, 1 if words of it
-/// begin with all words of the text.
-fn rank(name: &str, text: &str) -> u8 {
+/// Returns how well a name matches what is searched for, the best first: 0 if it begins with the text, the number of its
+/// words if some of them begin with all words of the text.
+fn rank(name: &str, text: &str) -> usize {
     let name = name.to_lowercase();
-    let begins_word = |word: &str| {
-        let mut own_words = name.split(|letter: char| !letter.is_alphanumeric());
-        own_words.any(|own| own.starts_with(word))
-    };
+    let own_words = || name.split(|letter: char| !letter.is_alphanumeric());
+    let begins_word = |word: &str| own_words().any(|own| own.starts_with(word));
     match () {
         () if name.starts_with(text) => 0,
-        () if text.split_whitespace().all(begins_word) => 1,
-        () => 2,
+        () if text.split_whitespace().all(begins_word) => own_words().count(),
+        () => usize::MAX,
     }
 }
 
@@ -406,12 +404,18 @@ mod tests {
     fn words_that_begin_so_come_before_words_that_hold_it() {
         let mut names = [
             "Record the flight",
+            "Hide light markers",
             "Add Light",
             "Light 2",
-            "Open example: flight",
         ];
         names.sort_by_key(|name| rank(name, "light"));
-        assert_eq!(names[..2], ["Light 2", "Add Light"]);
-        assert_eq!(rank("Add Light", "li add"), 1);
+        let sorted = [
+            "Light 2",
+            "Add Light",
+            "Hide light markers",
+            "Record the flight",
+        ];
+        assert_eq!(names, sorted);
+        assert_eq!(rank("Add Light", "li add"), 2);
     }
 }
