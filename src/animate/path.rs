@@ -24,7 +24,7 @@ pub struct CameraPath {
     /// Those of the keys. Each angle has the full turns that make it nearest to the one before, so that the camera
     /// never turns the longer way.
     numbers: Vec<CameraNumbers>,
-    /// For each key that begins a smooth segment, the index of its run and its index in that run.
+    /// For each key that begins a smooth segment, the index of its run and its index in that run; `None` for others.
     smooth_segments: Vec<Option<(usize, usize)>>,
     runs: Vec<Run>,
 }

@@ -272,7 +272,7 @@ fn stats(
     millis.sort_by(f64::total_cmp);
     let RenderCost { rays, lanes, .. } = costs[0].clone();
     Stats {
-        trace_ms: quantile(&millis, 0.5).unwrap_or_default(),
+        trace_ms: quantile(&millis, 0.5).unwrap_or(millis[0]),
         trace_ms_min: millis[0],
         rays,
         lanes,

@@ -231,7 +231,7 @@ impl AnimationState {
 
     /// Sets a key at the shown time for each tracked value that the edit from `scene` to `next` has changed, or
     /// overwritten, with something other than what is shown; in `next`, the scene's own value is restored. A value
-    /// that loses its last key keeps what is shown. Returns whether any key was set.
+    /// of a track that is gone keeps what is shown. Returns whether any key was set.
     pub fn key_tracked(&self, scene: &Scene, next: &mut Scene, replaced: &Replaced) -> bool {
         if replaced.animation {
             self.keep_unkeyed(scene, next);
@@ -275,10 +275,11 @@ impl AnimationState {
         let kept: HashSet<&Target> = kept.collect();
         let before = scene.animation.tracks.iter().map(|track| &track.target);
         let gone: Vec<&Target> = before.filter(|target| !kept.contains(target)).collect();
-        let owners = Owners::of(scene, gone.iter().copied());
+        let [in_shown, in_next] =
+            [&*self.shown, &*next].map(|scene| Owners::of(scene, gone.iter().copied()));
         for target in gone {
-            if let Some(value) = owners.get(&self.shown, target) {
-                owners.set(next, target, value);
+            if let Some(value) = in_shown.get(&self.shown, target) {
+                in_next.set(next, target, value);
             }
         }
     }

@@ -243,7 +243,7 @@ fn members(scene: &Scene) -> IndexMap<&str, HashSet<&str>> {
 }
 
 /// Returns the offset from the originals to a free place: two things in one place would shadow each other. All pasted
-/// things are offset alike, if possible to a place in the picture.
+/// things are offset alike, bounded objects if possible so that their middle is in the picture.
 fn paste_offset(scene: &Scene, pasted: &Scene) -> DVec3 {
     let new: Vec<Spot> = Spot::all_of(pasted).collect();
     let offset = |step: DVec3| offset_to_free_place(scene, &new, (step, 0));
@@ -263,8 +263,8 @@ fn paste_offset(scene: &Scene, pasted: &Scene) -> DVec3 {
     let first = if is_row { DVec3::Z * size.z } else { beside };
     let steps = [first, beside, -beside, DVec3::NEG_Z * size.z.max(size.x)];
     let middle = low.midpoint(high);
-    let seen =
-        { steps.into_iter().map(offset) }.find(|offset| is_in_picture(scene, middle + offset));
+    let mut offsets = steps.into_iter().map(offset);
+    let seen = offsets.find(|offset| is_in_picture(scene, middle + offset));
     seen.unwrap_or_else(|| offset(first))
 }
 

@@ -46,7 +46,8 @@ impl From<Keys> for Selection {
 impl Selection {
     /// The name of the selected group: all of its objects, at least two, and nothing else are selected.
     pub fn group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
-        self.whole_group(scene).filter(|_| self.items().len() > 1)
+        let are_several = self.items().len() > 1;
+        are_several.then(|| self.whole_group(scene)).flatten()
     }
 
     /// Whether the selection is exactly one whole group, which may have a single member.

@@ -183,7 +183,7 @@ impl Sequence {
         Ok(manifest.is_valid(&file, &fingerprint))
     }
 
-    /// Whether the last frame shows the same as the first, but not as the one before it: played in a loop, the picture
+    /// Whether the last frame shows the same as the first, but the one before it does not: played in a loop, the picture
     /// would then stand still for a frame.
     pub fn is_loop(&self) -> bool {
         let count = self.frames.count();
@@ -197,16 +197,16 @@ impl Sequence {
         };
         let first = self.shown(first);
         let fingerprint_of = |scene: &Scene| fingerprint(scene, self.format).ok();
-        let own = fingerprint_of(&first);
         let is_like_first = |frame: u64| {
             let shown = self.shown(frame);
-            let with_its_camera = Scene {
-                camera: first.camera.clone(),
-                ..Scene::clone(&shown)
-            };
-            shown.camera.is_like(&first.camera)
-                && own.is_some()
-                && fingerprint_of(&with_its_camera) == own
+            shown.camera.is_like(&first.camera) && {
+                let with_its_camera = Scene {
+                    camera: first.camera.clone(),
+                    ..Scene::clone(&shown)
+                };
+                let own = fingerprint_of(&first);
+                own.is_some() && fingerprint_of(&with_its_camera) == own
+            }
         };
         is_like_first(last) && !is_like_first(before)
     }

@@ -83,8 +83,8 @@ fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
 }
 
 /// Milliseconds and RMSE of the first way of each group that can be chosen for a scene; NaN for the others. Doubtful
-/// times count as their slowest run: a way that is faster even then is worth choosing. Excluded are other engines, smaller pictures, and models that skip less or show other things, which
-/// serve for comparison only.
+/// times count as their slowest run: a way that is faster even then is worth choosing. Excluded are other engines,
+/// smaller pictures, and models that skip less or show other things, which serve for comparison only.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
     let mut costs = costs_of_dots(study);
     for (cost, dot) in costs.iter_mut().zip(&study.measurements) {
@@ -96,7 +96,7 @@ pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
         } = dot.candidate;
         if family == Family::Referee || model != Model::Needed || upscale > 1 {
             *cost = (f64::NAN, f64::NAN);
-        } else if dot.is_doubtful() {
+        } else if dot.is_doubtful() && !cost.1.is_nan() {
             cost.0 = dot.times.iter().copied().fold(0.0, f64::max);
         }
     }

@@ -217,22 +217,11 @@ fn root_of(json: &[u8]) -> Result<(Root, bool), Fault> {
 
 /// Works around the `gltf` crate: it panics if the accessor of positions is missing, and refuses positions without
 /// bounds, which are not needed here and which some exporters omit. It also refuses primitives without positions,
-/// application-specific attributes, and accessors without data, which stand for zeros, all of which are legal. Among
-/// morph targets, which are left out, the latter are common.
+/// application-specific attributes, and morph targets without data, which stand for zeros; all of this is legal, and
+/// morph targets are left out.
 fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
-    for mesh in &mut root.meshes {
-        for primitive in &mut mesh.primitives {
-            let is_known = |semantic: &Checked<_>| matches!(semantic, Checked::Valid(_));
-            primitive
-                .attributes
-                .retain(|semantic, _| is_known(semantic));
-        }
-        let positions = Checked::Valid(Semantic::Positions);
-        mesh.primitives
-            .retain(|primitive| primitive.attributes.contains_key(&positions));
-    }
-    let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let targets = primitives().filter_map(|primitive| primitive.targets.as_ref());
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let targets = primitives.filter_map(|primitive| primitive.targets.as_ref());
     let offsets = targets.flatten().flat_map(|target| {
         let MorphTarget {
             positions,
@@ -248,7 +237,19 @@ fn prepare_primitives(root: &mut Root) -> Result<(), Fault> {
             accessor.buffer_view.get_or_insert(Index::new(0));
         }
     }
-    for primitive in primitives() {
+    for mesh in &mut root.meshes {
+        for primitive in &mut mesh.primitives {
+            let is_known = |semantic: &Checked<_>| matches!(semantic, Checked::Valid(_));
+            primitive
+                .attributes
+                .retain(|semantic, _| is_known(semantic));
+        }
+        let positions = Checked::Valid(Semantic::Positions);
+        mesh.primitives
+            .retain(|primitive| primitive.attributes.contains_key(&positions));
+    }
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for primitive in primitives {
         let positions = Checked::Valid(Semantic::Positions);
         let Some(index) = primitive.attributes.get(&positions) else {
             continue;

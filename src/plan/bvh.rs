@@ -272,8 +272,8 @@ impl<R: Real> Bvh<R> {
         boxes.map(half_surface).sum()
     }
 
-    /// Renumbers the `count` members so that those of a node are consecutive. Returns the old numbers in the new
-    /// order.
+    /// Renumbers the `count` members in the order in which nodes hold them first, so that those of a node are mostly
+    /// consecutive. Returns the old numbers in the new order.
     pub fn renumber(&mut self, count: usize) -> Vec<u32> {
         let (mut old, mut new) = (Vec::with_capacity(count), vec![u32::MAX; count]);
         for node in Arc::make_mut(&mut self.nodes) {

@@ -1,5 +1,7 @@
 //! Single rays through the tree of a mesh: the distance to the opposite side, and whether a point is outside.
 
+use std::collections::HashSet;
+
 use super::bvh::{Bvh, Child, GROUP};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
@@ -14,7 +16,7 @@ pub fn cast<R: Real>(
 ) -> bool {
     let inverse = direction.to_array().map(|part| R::ONE / part);
     let mut reach = R::INFINITY;
-    let (mut waiting, mut hits) = (vec![0], Vec::new());
+    let (mut waiting, mut hits) = (vec![0], HashSet::new());
     let mut remaining = max_nodes;
     while let Some(node) = waiting
         .pop()
@@ -35,8 +37,7 @@ pub fn cast<R: Real>(
                 Child::Member(face) => {
                     let t = intersect(&triangles[face as usize].corners, origin, direction);
                     // Several slices of it may be in boxes that are hit.
-                    if t < R::INFINITY && !hits.contains(&face) {
-                        hits.push(face);
+                    if t < R::INFINITY && hits.insert(face) {
                         reach = on_hit(face, t);
                     }
                 }

@@ -53,7 +53,8 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    /// The thickness through the inside. All faces of a node get the least value measured for some of them.
+    /// The thickness through the inside. All faces of a node get the least value measured for some of them; faces in
+    /// several nodes get the least of these.
     fn depths(&self) -> Vec<f64> {
         let nodes = self.bvh.nodes.par_iter();
         let found: Vec<f64> = nodes.map(|node| self.least_depth(node)).collect();

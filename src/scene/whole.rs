@@ -252,7 +252,7 @@ impl Scene {
     /// Returns a mesh file that was read again; if it puts a mesh of this scene too far from the origin, as one that
     /// could not be read.
     pub fn checked_read(&self, read: MeshSource) -> MeshSource {
-        let with_new = self
+        let mut with_new = self
             .objects
             .iter()
             .filter_map(|object| match &object.shape {
@@ -266,12 +266,12 @@ impl Scene {
                 }
                 _ => None,
             });
-        let refused = { with_new }.find(|source| source.problem().is_some());
+        let refused = with_new.find(|source| source.problem().is_some());
         refused.unwrap_or(read)
     }
 
     /// Returns the scene with its mesh files replaced by newly read ones, except for those that can no longer be
-    /// read; `None` if nothing changes.
+    /// read or would put the mesh too far from the origin; `None` if nothing changes.
     pub fn with_read(&self, read: &[MeshSource]) -> Option<Self> {
         let new = |source: &MeshSource| {
             let own = source.reference()?;
@@ -280,7 +280,21 @@ impl Scene {
             (read != source && !is_loss).then(|| read.clone())
         };
         let has_changes = self.mesh_sources().any(|source| new(source).is_some());
-        has_changes.then(|| self.with_sources(new))
+        has_changes.then(|| {
+            let mut scene = self.clone();
+            scene.change_meshes(|mesh| {
+                let source = new(&mesh.source)?;
+                let is_readable = source.problem().is_none();
+                let mut changed = Mesh {
+                    source,
+                    ..mesh.clone()
+                };
+                changed.refuse_if_too_far();
+                // What would be too far away here stays as it is.
+                (changed.source.problem().is_none() == is_readable).then_some(changed)
+            });
+            scene
+        })
     }
 
     fn mesh_sources(&self) -> impl Iterator<Item = &MeshSource> {

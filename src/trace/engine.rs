@@ -58,7 +58,7 @@ impl<L: SimdFloat> Default for Workspace<L> {
 pub struct Engine<'a, L: SimdFloat, const TREE: bool> {
     kernel: Kernel<'a, L, TREE>,
     work: &'a mut Workspace<L>,
-    /// Says once the picture is no longer wanted; also asked within a tile, whose rays can take minutes.
+    /// Tells whether the picture is still wanted; asked also within a tile, whose rays can take minutes.
     control: &'a RenderControl,
     retracer: Option<&'a dyn Retracer>,
     /// Number of rays traced so far.

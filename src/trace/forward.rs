@@ -70,8 +70,8 @@ impl<L: SimdFloat> Bounce<L> {
         }
     }
 
-    /// Returns whether samples are only doubted where two camera hits may swap places: those that search for an edge
-    /// inside a pixel. Where rounding may decide what else they see, both sides of the edge are equally near: the
+    /// Returns whether samples are only doubted where two camera hits may swap places, or where a ray passes exactly
+    /// through an edge: those that search for an edge inside a pixel. Where rounding may decide what else they see, both sides of the edge are equally near: the
     /// pixel changes by one step of the finest grid, or by what remains of a cell that is not divided. In 1 scene of
     /// 30, this is more than one level, and at most 7, in one pixel or a few; doubting them would make meshes take 1.2
     /// times as long, and a mirror with a mesh 1.4 times. Surfaces a hair apart, however, may swap places in whole
@@ -176,7 +176,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
         // Hits may be off, most of all on large things.
         let farthest = farthest.greatest();
-        let hit_error = if self.uncertainties.is_empty() {
+        let hit_error = if self.uncertainties.is_empty() || ties_only {
             L::Real::ZERO
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);

@@ -217,20 +217,32 @@ fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) ->
     // A scene may have very many things.
     let room = MAX_MATCHES.saturating_sub(matches.len());
     matches.extend(scene_items(editor, matches_query).take(room));
-    matches.sort_by_key(|entry| (!entry.is_enabled, rank(&entry.name, &text)));
+    matches.sort_by_cached_key(|entry| {
+        let rank = rank((&entry.name, aliases_of(entry)), &text);
+        (!entry.is_enabled, rank)
+    });
     matches
 }
 
-/// Returns how well a name matches what is searched for, the best first: 0 if it begins with the text, the number of its
-/// words if some of them begin with all words of the text.
-fn rank(name: &str, text: &str) -> usize {
+/// Returns how well a name, and other words for it, match what is searched for, the best first: 0 if the name begins with
+/// the text; the number of its words, if some words begin with all words of the text; the greatest number otherwise.
+fn rank((name, aliases): (&str, &str), text: &str) -> usize {
     let name = name.to_lowercase();
-    let own_words = || name.split(|letter: char| !letter.is_alphanumeric());
-    let begins_word = |word: &str| own_words().any(|own| own.starts_with(word));
-    match () {
-        () if name.starts_with(text) => 0,
-        () if text.split_whitespace().all(begins_word) => own_words().count(),
-        () => usize::MAX,
+    let words = |text: &str| -> Vec<String> {
+        let words = text.split(|letter: char| !letter.is_alphanumeric());
+        words
+            .filter(|word| !word.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    let (own, others) = (words(&name), words(aliases));
+    let begins_word = |word: &str| own.iter().chain(&others).any(|own| own.starts_with(word));
+    if name.starts_with(text) {
+        0
+    } else if text.split_whitespace().all(begins_word) {
+        own.len()
+    } else {
+        usize::MAX
     }
 }
 
@@ -408,7 +420,7 @@ mod tests {
             "Add Light",
             "Light 2",
         ];
-        names.sort_by_key(|name| rank(name, "light"));
+        names.sort_by_key(|name| rank((name, ""), "light"));
         let sorted = [
             "Light 2",
             "Add Light",
@@ -416,6 +428,7 @@ mod tests {
             "Record the flight",
         ];
         assert_eq!(names, sorted);
-        assert_eq!(rank("Add Light", "li add"), 2);
+        assert_eq!(rank(("Add Light", ""), "li add"), 2);
+        assert_eq!(rank(("Show: histogram", "levels"), "levels"), 2);
     }
 }

@@ -14,6 +14,8 @@ use crate::worker::Frame;
 const SIZE: (f32, f32) = (192.0, 64.0);
 /// Height of the text below, in points.
 const TEXT_HEIGHT: f32 = 18.0;
+/// Least width beside the histogram that has room for something, in points.
+const MIN_WIDTH_BESIDE: f32 = 280.0;
 
 /// The histogram of the last finished picture.
 #[derive(Default)]
@@ -66,9 +68,15 @@ fn frame_in(picture: Rect) -> Rect {
     Rect::from_min_size(corner, size)
 }
 
-/// Returns the part of a picture to the right of the histogram.
-pub fn right_of_histogram(picture: Rect) -> Rect {
-    picture.with_min_x(frame_in(picture).right())
+/// Returns the part of a picture to the right of the histogram, or above it if that is too narrow for words.
+pub fn beside_histogram(picture: Rect) -> Rect {
+    let frame = frame_in(picture);
+    let right = picture.with_min_x(frame.right());
+    if right.width() < MIN_WIDTH_BESIDE {
+        picture.with_max_y(frame.top())
+    } else {
+        right
+    }
 }
 
 /// Returns the curve of a channel: the square root of the counts, so that small counts are visible next to large ones.

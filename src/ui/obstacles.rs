@@ -47,7 +47,7 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             let objects = items.filter(|item| item.kind == ItemKind::Object);
             let objects = objects.filter_map(|item| editor.scene().objects.get(item.index));
             let mut objects = objects.peekable();
-            let is_endless = |object: &Object| object.shape.bounds().is_none();
+            let is_endless = |object: &Object| object.shape.endless_plane().is_some();
             match command {
                 _ if objects.peek().is_none() => Some("no object is selected"),
                 Command::PutDown if objects.all(is_endless) => Some("planes go on forever"),

@@ -8,7 +8,7 @@ use egui::{
 
 use super::app::App;
 use super::commands::Command;
-use super::histogram::right_of_histogram;
+use super::histogram::beside_histogram;
 use super::layout::Below;
 use super::requests::UiRequests;
 use super::theme::{GRID, INSPECTOR, LAB, OUTLINER, ROW, TIMELINE, TRACKS, WIDE_WINDOW, palette};
@@ -206,7 +206,7 @@ impl App {
                 self.layout.aspect = Aspect::All;
             }
             let free = if self.layout.histogram {
-                right_of_histogram(place.rect)
+                beside_histogram(place.rect)
             } else {
                 place.rect
             };

@@ -271,7 +271,7 @@ impl App {
         }
     }
 
-    /// Returns the action that a command is; `None` if it does something else, or nothing.
+    /// Returns the action that a command is; `None` if it is none, or has been carried out here.
     fn action_of(&mut self, command: &Command) -> Option<Action> {
         let editor = &mut self.editor;
         Some(match command {

@@ -93,12 +93,12 @@ impl Program {
             .expect("the program starts");
         let child = Running(child);
         let program = Self { child, folder };
-        wait_until("the window", || {
+        wait_for("the window", || {
             !display
                 .tool("xdotool", &["search", "--name", "^Glint"])
                 .is_empty()
         });
-        wait_until("the first picture", || is_violet(middle(&display.look())));
+        wait_for("the first picture", || is_violet(middle(&display.look())));
         // Only a mapped window takes the focus, and there is no window manager to give it.
         let window = display.tool("xdotool", &["search", "--name", "^Glint"]);
         let window = window.lines().next().expect("a window").to_owned();
@@ -106,7 +106,7 @@ impl Program {
         // Move the pointer out of the picture, which would show the name of what it hovers; a display without
         // clients forgets the pointer's position.
         display.tool("xdotool", &["mousemove", "1270", "792"]);
-        wait_until("rest", || {
+        wait_for("rest", || {
             let before = display.look();
             std::thread::sleep(Duration::from_millis(500));
             changed(&before, &display.look()) == 0
@@ -116,12 +116,20 @@ impl Program {
 
     fn end(&mut self) -> ExitStatus {
         let mut status = None;
-        wait_until("the end", || {
+        wait_for("the end", || {
             status = self.child.0.try_wait().expect("asked");
             status.is_some()
         });
         status.expect("ended")
     }
+}
+
+/// Waits until the screen, say, is as wanted; looks at it now and then, since that takes time from the program.
+fn wait_for(what: &str, mut is_true: impl FnMut() -> bool) {
+    wait_until(what, || {
+        std::thread::sleep(Duration::from_millis(50));
+        is_true()
+    });
 }
 
 fn command(display: &Display, folder: &Path) -> Command {
@@ -161,32 +169,32 @@ fn the_window_shows_the_demo_follows_keys_and_closes() {
     let mut program = Program::start(&display, &[]);
     let start = display.look();
     display.key("o");
-    wait_until("the orthographic picture", || {
+    wait_for("the orthographic picture", || {
         changed(&start, &display.look()) > 50_000
     });
     display.key("p");
-    wait_until("the perspective picture", || {
+    wait_for("the perspective picture", || {
         changed(&start, &display.look()) < 500
     });
     display.tool("xdotool", &["keydown", "w"]);
     std::thread::sleep(Duration::from_millis(300));
     display.tool("xdotool", &["keyup", "w"]);
-    wait_until("the flight", || changed(&start, &display.look()) > 50_000);
+    wait_for("the flight", || changed(&start, &display.look()) > 50_000);
     display.key("ctrl+z");
-    wait_until("the way back", || changed(&start, &display.look()) < 500);
+    wait_for("the way back", || changed(&start, &display.look()) < 500);
     display.key("h");
-    wait_until("the high-res picture", || {
+    wait_for("the high-res picture", || {
         changed(&start, &display.look()) > 2_000
     });
     display.key("Escape");
-    wait_until("the live view", || changed(&start, &display.look()) < 500);
+    wait_for("the live view", || changed(&start, &display.look()) < 500);
     // The first Escape only says how to quit.
     display.key("Escape");
     display.key("Escape");
-    wait_until("the question", || changed(&start, &display.look()) > 50_000);
+    wait_for("the question", || changed(&start, &display.look()) > 50_000);
     // The next key does not quit either.
     display.key("Return");
-    wait_until("the window again", || {
+    wait_for("the window again", || {
         changed(&start, &display.look()) < 500
     });
     display.key("ctrl+q");
@@ -209,7 +217,7 @@ fn a_killed_program_loses_no_edit() {
                 && path.to_string_lossy().contains("unsaved")
         })
     };
-    wait_until("the autosave", || kept(program.folder.path()).is_some());
+    wait_for("the autosave", || kept(program.folder.path()).is_some());
     program.child.0.kill().expect("killed");
     program.end();
     let text =
@@ -232,7 +240,7 @@ fn a_killed_program_loses_no_edit() {
     let child = command(&display, program.folder.path()).arg(scene).spawn();
     program.child = Running(child.expect("starts"));
     let marker = |screen: &RgbaImage| screen.get_pixel(307, 326).0[..3] == [255, 255, 0];
-    wait_until("the recovered picture", || {
+    wait_for("the recovered picture", || {
         let screen = display.look();
         is_violet(middle(&screen)) && !marker(&screen)
     });
@@ -341,7 +349,7 @@ impl Compositor {
             _server: Running(server),
             folder,
         };
-        wait_until("the compositor", || socket.exists());
+        wait_for("the compositor", || socket.exists());
         compositor
     }
 }

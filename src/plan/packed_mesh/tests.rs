@@ -114,6 +114,12 @@ fn the_boxes_of_narrow_faces_are_as_small_whichever_way_they_are_wound() {
         let nodes = mesh.bvh.nodes.iter();
         let boxes = nodes.flat_map(|node| (0..node.count).map(|index| node.bounds::<f64>(index)));
         let sizes = boxes.map(|bounds| (bounds.high - bounds.low).length());
+        // A face counts once, however many of its slices a line meets.
+        let is_seen = |point| is_outside(&mesh.triangles, &mesh.bvh, mesh.to_local(point));
+        for at in [0.1, 1.0, 4.0] {
+            assert!(!is_seen(DVec3::new(0.3, at, -0.2)), "{at}");
+            assert!(is_seen(DVec3::new(at - 9.0, 7.0, at)), "{at}");
+        }
         (mesh.is_inside_out, sizes.sum::<f64>())
     });
     let [(one_way, one), (other_way, other)] = boxes;

@@ -131,6 +131,9 @@ impl Lab {
             if last_width.is_some_and(|width| ui.available_size_before_wrap().x < width) {
                 ui.end_row();
             }
+            if last_width.is_none() {
+                ui.request_repaint();
+            }
             let row = ui.horizontal(|ui| {
                 let button = ui.add_enabled(costs.is_some(), Button::new(words));
                 ui.add(value).accessible_name(name);
