@@ -6,8 +6,6 @@ mod balls;
 
 mod grouping;
 
-mod slices;
-
 mod bvh;
 
 mod cast;

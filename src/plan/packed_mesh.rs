@@ -14,12 +14,11 @@ use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
 use super::components::{first_of_components, volume};
 use super::oriented_box::OrientedBox;
-use super::slices::{Slice, slices_of};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::thicknesses;
 use super::tips::tips;
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Primitive as _};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
 use crate::scene::{Mesh, around};
 use crate::simd::{Real, Vec3};
 
@@ -144,20 +143,12 @@ impl PackedMesh<f64> {
         let faces = mesh.source.triangles().faces().iter().map(face);
         let faces: Vec<_> = faces.filter(|face| packed(face).is_some()).collect();
         // The tree first, since building it takes more memory than anything else.
-        let face_corners = |face: usize| corners(faces[face]).map(Vec3::from_dvec3);
-        let slices = slices_of(faces.len(), face_corners);
-        let count = slices.len().max(faces.len());
-        let slice = |entry: usize| match slices.get(entry) {
-            Some(&(face, slice)) => (face as usize, slice),
-            None => (entry, Slice::WHOLE),
-        };
-        let mut bvh = Bvh::of_slices((count, slice), |face, slice| Member {
-            bounds: slice.bounds(&face_corners(face)),
+        let mut bvh = Bvh::new(faces.len(), |number| Member {
+            bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
             thickness: f64::INFINITY,
         });
-        drop(slices);
         // Triangles that are hit together are stored together.
-        let order = bvh.renumber(faces.len()).into_iter();
+        let order = bvh.renumber().into_iter();
         let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
         let corners_of = |face: u32| corners(faces[face as usize]).map(Vec3::from_dvec3);
         let borders = Borders::of(&faces, corners_of, |_| 0);
@@ -235,12 +226,7 @@ impl<R: Real> PackedMesh<R> {
             return None;
         }
         let mut bvh = self.bvh.in_precision();
-        // Faces that are flipped have other edges, but slices are those of the source's faces.
-        let corners = |number: usize| self.faces[number].map(|point| points[point as usize]);
-        bvh.refit(|number, slice| Member {
-            bounds: slice.bounds(&corners(number).map(Vec3::from_dvec3)),
-            thickness: triangles[number].thickness(),
-        });
+        bvh.refit(|number| Member::of(&triangles[number]));
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
@@ -310,7 +296,7 @@ pub fn measure(
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.tip = tip;
     }
-    bvh.refit(|number, slice| Member::of_slice(&triangles[number], slice));
+    bvh.refit(|number| Member::of(&triangles[number]));
 }
 
 /// The normals of faces that are shaded as one curved surface; empty if the mesh is flat.

@@ -32,18 +32,14 @@ pub struct Doubt<L: SimdFloat, const TREE: bool> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
-    /// Starts with nothing in doubt, which stays so unless `is_enabled`. `blur` is the lateral error where rays may hit
-    /// or miss, `nearer` the one where two hits may swap places. Without `doubts_nearer`, it is never in doubt which of
-    /// them is nearer.
+    /// Starts with nothing in doubt, which stays so unless `is_enabled`. Without `doubts_nearer`, it is never in doubt
+    /// which of two hits is nearer.
     #[inline(always)]
-    pub fn new(
-        (blur, nearer): (Blur<L>, Blur<L>),
-        (is_enabled, doubts_nearer): (bool, bool),
-    ) -> Self {
+    pub fn new(blur: Blur<L>, (is_enabled, doubts_nearer): (bool, bool)) -> Self {
         Self {
             is_enabled,
             blur,
-            along: nearer.times(if doubts_nearer { GRAZING_FACTOR } else { 0.0 }),
+            along: blur.times(if doubts_nearer { GRAZING_FACTOR } else { 0.0 }),
             undecided_from: blur.start.like(L::Real::INFINITY),
             second_nearest: blur.start.like(L::Real::INFINITY),
         }

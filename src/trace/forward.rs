@@ -52,14 +52,17 @@ impl<L: SimdFloat> Bounce<L> {
             let rays = Ray { origin, direction };
             self.packets.push(Packet::new(kernel, rays, active));
         }
-        self.edge_detail = edges;
-        if is_filtered::<L, TREE>() && kernel.plan.is_doubted() {
-            let mut uncertainty = Uncertainty::new(token, kernel.plan);
-            if self.doubts_ties_only() {
-                uncertainty.blur = Blur::splat(token, Blur::NONE);
-            }
+        // Samples that search for an edge inside a pixel are not doubted. Where rounding may decide what they see,
+        // both sides of the edge are equally near: the pixel changes by one step of the finest grid, or by what
+        // remains of a cell that is not divided. In 1 scene of 30, this is more than one level, and at most 7, in
+        // one pixel or a few; doubting them would make meshes take 1.2 times as long, and a mirror with a mesh 1.4
+        // times.
+        let is_doubted = edges != EdgeDetail::Signatures && kernel.plan.is_doubted();
+        if is_filtered::<L, TREE>() && is_doubted {
+            let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }
+        self.edge_detail = edges;
         if edges != EdgeDetail::Ignored {
             let (width, spread) = view.footprint();
             let cone = RayCone {
@@ -68,16 +71,6 @@ impl<L: SimdFloat> Bounce<L> {
             };
             self.edges.resize(self.packets.len(), EdgeInfo::new(cone));
         }
-    }
-
-    /// Returns whether samples are only doubted where two camera hits may swap places, or where a ray passes exactly
-    /// through an edge: those that search for an edge inside a pixel. Where rounding may decide what else they see, both sides of the edge are equally near: the
-    /// pixel changes by one step of the finest grid, or by what remains of a cell that is not divided. In 1 scene of
-    /// 30, this is more than one level, and at most 7, in one pixel or a few; doubting them would make meshes take 1.2
-    /// times as long, and a mirror with a mesh 1.4 times. Surfaces a hair apart, however, may swap places in whole
-    /// pixels.
-    fn doubts_ties_only(&self) -> bool {
-        self.edge_detail == EdgeDetail::Signatures
     }
 
     /// Returns whether things that may slip between samples are looked for.
@@ -128,10 +121,6 @@ impl<L: SimdFloat> Bounce<L> {
         let mut bounds = Bounds::new(kernel.token);
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
-        let (ties_only, of_ties) = (
-            self.doubts_ties_only(),
-            Blur::splat(kernel.token, plan.blur),
-        );
         let culled_faces = self.culled_faces(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
@@ -147,14 +136,8 @@ impl<L: SimdFloat> Bounce<L> {
             let (active, stack) = (packet.active, &mut scratch.stack);
             let mut uncertainty = self.uncertainties.get_mut(index);
             let blur = uncertainty.as_ref().map_or(none, |rays| rays.blur);
-            let nearer = if ties_only && uncertainty.is_some() {
-                of_ties
-            } else {
-                blur
-            };
-            let blurs = (blur, nearer);
             let doubt;
-            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blurs), active, stack);
+            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
                 uncertainty.doubt = doubt;
             }
@@ -176,7 +159,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
         // Hits may be off, most of all on large things.
         let farthest = farthest.greatest();
-        let hit_error = if self.uncertainties.is_empty() || ties_only {
+        let hit_error = if self.uncertainties.is_empty() {
             L::Real::ZERO
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
@@ -294,7 +277,7 @@ impl<L: SimdFloat> Bounce<L> {
         next: &mut Self,
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
-        let (looks_for_thin, ties_only) = (self.looks_for_thin(), self.doubts_ties_only());
+        let looks_for_thin = self.looks_for_thin();
         let has_gaps =
             self.edge_detail >= EdgeDetail::Borders && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
@@ -308,12 +291,7 @@ impl<L: SimdFloat> Bounce<L> {
                 lights: &self.lights,
                 gap_lights: has_gaps.then_some(&self.lights),
             };
-            let uncertainty = if ties_only {
-                None
-            } else {
-                self.uncertainties.get_mut(index)
-            };
-            let notes = (self.edges.get_mut(index), uncertainty);
+            let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
             let packet = &mut self.packets[index];
             let Some(mirrored) =
                 shader.shade(packet, (ignored, notes), &mut self.mixed, (stack, rays))
@@ -324,11 +302,9 @@ impl<L: SimdFloat> Bounce<L> {
             let paths = mirrored.paths;
             next.packets
                 .push(Packet::new(kernel, paths.rays, mirrored.active));
-            if !ties_only {
-                let uncertainty = self.uncertainties.get(index);
-                next.uncertainties
-                    .extend(uncertainty.map(Uncertainty::of_mirrored));
-            }
+            let uncertainty = self.uncertainties.get(index);
+            next.uncertainties
+                .extend(uncertainty.map(Uncertainty::of_mirrored));
             next.parents.push(ReflectionParent {
                 packet: index,
                 ignored: paths.ignored,

@@ -95,12 +95,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 
     /// Finds the nearest primitives along the paths where the mask is set. The returned mask tells where rounding
-    /// may decide which these are, given the blurs of [`Doubt::new`].
+    /// may decide which these are.
     #[inline(always)]
     pub fn nearest(
         self,
         targets: Targets<L::Real>,
-        (paths, (blur, nearer)): (&Paths<L>, (Blur<L>, Blur<L>)),
+        (paths, blur): (&Paths<L>, Blur<L>),
         active: L::Mask,
         stack: &mut Stack<L::Real>,
     ) -> (Nearest<L>, L::Mask) {
@@ -110,7 +110,7 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
         };
         let is_tied = !self.plan.ties.is_empty();
         let mut best = nothing;
-        let mut doubt = Doubt::new((blur, nearer), (self.plan.is_doubted(), !is_tied));
+        let mut doubt = Doubt::new(blur, (self.plan.is_doubted(), !is_tied));
         let mut test = NearestTest::<L, TREE, true> {
             methods: &self.plan.methods,
             best: &mut best,
@@ -283,13 +283,7 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 return;
             };
             doubt.undecided_from = doubt.undecided_from.min(from);
-            let mut other = t.max(self.best.t);
-            if !LISTED {
-                // Several slices of a face may be met, but it is no other one.
-                let is_again = self.best.number.same(other.like(real(number)));
-                other = L::select(is_again, other.like(L::Real::INFINITY), other);
-            }
-            doubt.second_nearest = doubt.second_nearest.min(other);
+            doubt.second_nearest = doubt.second_nearest.min(t.max(self.best.t));
             t
         } else {
             paths.distance::<LISTED, P>(primitive, prepared, number, self.methods)

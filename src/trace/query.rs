@@ -81,7 +81,7 @@ impl SceneQuery {
             light: None,
             culled_faces: &[],
         };
-        let rays = (&paths, (Blur::NONE, Blur::NONE));
+        let rays = (&paths, Blur::NONE);
         let (nearest, _) = kernel.nearest(targets, rays, true, &mut Vec::new());
         nearest.t
     }

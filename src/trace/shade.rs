@@ -439,8 +439,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubts = (point.error.is_some(), !light.may_be_on_surface);
-        let doubt = Doubt::new((blur, blur), doubts);
+        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_be_on_surface));
         let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
         if point.error.is_some() {
