@@ -283,7 +283,13 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 return;
             };
             doubt.undecided_from = doubt.undecided_from.min(from);
-            doubt.second_nearest = doubt.second_nearest.min(t.max(self.best.t));
+            let mut other = t.max(self.best.t);
+            if !LISTED {
+                // Several slices of a face may be met, but it is no other one.
+                let is_again = self.best.number.same(other.like(real(number)));
+                other = L::select(is_again, other.like(L::Real::INFINITY), other);
+            }
+            doubt.second_nearest = doubt.second_nearest.min(other);
             t
         } else {
             paths.distance::<LISTED, P>(primitive, prepared, number, self.methods)

@@ -2,6 +2,10 @@
 
 mod curved;
 
+mod vertex;
+
+mod slicing;
+
 mod packed;
 
 mod watertight;
@@ -13,7 +17,9 @@ mod in_doubt;
 pub use curved::{CornerNormals, Curved};
 use in_doubt::watertight_in_doubt;
 use packed::SHARES_PER_UNIT;
-pub use packed::{Culling, PackedTriangle, Tip, Vertex};
+pub use packed::{Culling, PackedTriangle, Tip};
+pub use slicing::Slicing;
+pub use vertex::Vertex;
 use watertight::{Passing, Shear, watertight};
 
 use glam::DVec3;
