@@ -85,6 +85,13 @@ impl Item {
         }
     }
 
+    /// The group that an object is in, if any.
+    pub fn group(self, scene: &Scene) -> Option<&str> {
+        let object = scene.objects.get(self.index);
+        let group = &object.filter(|_| self.kind == ItemKind::Object)?.group;
+        (!group.is_empty()).then_some(group)
+    }
+
     /// Whether a light shines or an object is visible; `None` for color packs, and if there is no such item.
     pub fn is_visible(self, scene: &Scene) -> Option<bool> {
         match self.kind {

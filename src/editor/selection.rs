@@ -56,8 +56,8 @@ impl Selection {
     }
 
     fn whole_group<'a>(&self, scene: &'a Scene) -> Option<&'a str> {
-        let group = group_of(scene, *self.items().first()?)?;
-        let is_member = |item: &Item| group_of(scene, *item) == Some(group);
+        let group = self.items().first()?.group(scene)?;
+        let is_member = |item: &Item| item.group(scene) == Some(group);
         let members = scene.objects.iter().filter(|object| object.group == group);
         let is_whole = self.items().iter().all(is_member) && members.count() == self.items().len();
         is_whole.then_some(group)
@@ -74,7 +74,7 @@ impl Selection {
     /// that group is selected already; then it stands for itself.
     #[must_use]
     pub fn picked(&self, scene: &Scene, items: &[Item]) -> Self {
-        let group = |item: &Item| group_of(scene, *item);
+        let group = |item: &Item| item.group(scene);
         let open: HashSet<&str> = self.items().iter().filter_map(group).collect();
         let closed = items.iter().filter_map(group);
         let closed: HashSet<&str> = closed.filter(|group| !open.contains(group)).collect();
@@ -92,7 +92,7 @@ impl Selection {
     /// thing if it was selected. If its whole group is selected along with other things, the whole group is removed.
     #[must_use]
     pub fn toggled_at(&self, scene: &Scene, item: Item) -> Self {
-        let group = group_of(scene, item).map(|group| Self::of_group(scene, group));
+        let group = item.group(scene).map(|group| Self::of_group(scene, group));
         let is_proper_subset = |group: &Self| {
             let count = group.items().len();
             count < self.items().len() && self.has_all(group.items().iter().copied())
@@ -282,11 +282,4 @@ impl Selection {
         });
         Self::all(followed)
     }
-}
-
-/// The name of the group that an item is in.
-fn group_of(scene: &Scene, item: Item) -> Option<&str> {
-    let object = scene.objects.get(item.index);
-    let group = &object.filter(|_| item.kind == ItemKind::Object)?.group;
-    (!group.is_empty()).then_some(group)
 }

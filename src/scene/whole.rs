@@ -257,12 +257,7 @@ impl Scene {
             .iter()
             .filter_map(|object| match &object.shape {
                 Shape::Mesh(mesh) if mesh.source.reference() == read.reference() => {
-                    let mut new = Mesh {
-                        source: read.clone(),
-                        ..mesh.clone()
-                    };
-                    new.refuse_if_too_far();
-                    Some(new.source)
+                    Some(mesh.with_read(read.clone()).source)
                 }
                 _ => None,
             });
@@ -285,11 +280,7 @@ impl Scene {
             scene.change_meshes(|mesh| {
                 let source = new(&mesh.source)?;
                 let is_readable = source.problem().is_none();
-                let mut changed = Mesh {
-                    source,
-                    ..mesh.clone()
-                };
-                changed.refuse_if_too_far();
+                let changed = mesh.with_read(source);
                 // What would be too far away here stays as it is.
                 (changed.source.problem().is_none() == is_readable).then_some(changed)
             });

@@ -418,11 +418,11 @@ impl eframe::App for App {
         // Asked after the live view was submitted: a question would keep it waiting.
         self.pictures.ask(&self.editor, questions);
         let is_settled = self.is_settled();
-        let mut screenshot = self.screenshot.iter_mut();
-        let is_taken = screenshot.any(|screenshot| screenshot.tick(&ctx, is_settled));
+        let screenshot = self.screenshot.as_mut();
+        let is_taken = screenshot.is_some_and(|screenshot| screenshot.tick(&ctx, is_settled));
         let has_picture = self.pictures.shown(&self.editor).is_some();
-        let mut start = self.start.iter_mut();
-        let is_timed = start.any(|start| start.tick(&ctx, has_picture));
+        let start = self.start.as_mut();
+        let is_timed = start.is_some_and(|start| start.tick(&ctx, has_picture));
         if is_taken || is_timed {
             self.closing = Some(self.editor.revision());
         }

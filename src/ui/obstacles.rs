@@ -55,10 +55,8 @@ pub fn obstacle(command: &Command, editor: &Editor) -> Option<&'static str> {
             }
         }
         Command::Ungroup => {
-            let items = editor.selection().items().iter();
-            let mut objects = items.filter(|item| item.kind == ItemKind::Object);
-            let group = |item: &Item| Some(&editor.scene().objects.get(item.index)?.group);
-            let has = objects.any(|item| group(item).is_some_and(|group| !group.is_empty()));
+            let mut items = editor.selection().items().iter();
+            let has = items.any(|item| item.group(editor.scene()).is_some());
             (!has).then_some("nothing in a group is selected")
         }
         Command::MergePacks => {

@@ -183,9 +183,20 @@ impl Mesh {
         self.refuse_if_too_far();
     }
 
+    /// The mesh with the triangles of its file as they were read again, refused as by [`Self::load`].
+    #[must_use]
+    pub fn with_read(&self, source: MeshSource) -> Self {
+        let mut new = Self {
+            source,
+            ..self.clone()
+        };
+        new.refuse_if_too_far();
+        new
+    }
+
     /// Replaces the triangles of the mesh file by the reason why they are refused, if they lie too far from the
     /// origin: the extent is known only once the file is read.
-    pub fn refuse_if_too_far(&mut self) {
+    fn refuse_if_too_far(&mut self) {
         if let MeshSource::File { path, .. } = &self.source
             && let Some(sentence) = self.problem()
         {

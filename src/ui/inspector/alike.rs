@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::items::{BOTH_COLORS, COLOR_PACK};
 use crate::editor::{Edit, Item, ItemKind};
-use crate::scene::{ColorPack, Light, Object, Property, Scene, Shape};
+use crate::scene::{ColorPack, Light, Object, Scene, Shape};
 use crate::ui::rows::{EditedPart, is_channel};
 
 /// A point of an item that an edit moves.
@@ -277,10 +277,11 @@ fn with_changed_coordinates(current: DVec3, old: DVec3, new: DVec3) -> DVec3 {
 /// All properties of a shape with their names; a single number fills all three coordinates.
 pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
     let mut values = Vec::new();
-    shape.clone().fields(&mut |Property {
-                                   name, mut value, ..
-                               }| {
-        value.with_vector(|vector| values.push((name, *vector)));
+    shape.clone().fields(&mut |mut property| {
+        let name = property.name;
+        property
+            .value
+            .with_vector(|vector| values.push((name, *vector)));
     });
     values
 }
@@ -288,16 +289,13 @@ pub fn values(shape: &Shape) -> Vec<(&'static str, DVec3)> {
 /// Applies to a shape the changes from `old` to `new` of the properties that it has, too.
 fn copy_shape_changes(shape: &mut Shape, old: &Shape, new: &Shape) {
     let (old, new) = (values(old), values(new));
-    shape.fields(&mut |Property {
-                           name, mut value, ..
-                       }| {
+    shape.fields(&mut |mut property| {
         let find = |values: &[(&str, DVec3)]| {
-            let mut values = values.iter();
-            values
-                .find(|(other, _)| *other == name)
-                .map(|(_, value)| *value)
+            let mut named = values.iter().filter(|(name, _)| *name == property.name);
+            named.next().map(|(_, value)| *value)
         };
         if let Some((old, new)) = find(&old).zip(find(&new)) {
+            let value = &mut property.value;
             value.with_vector(|vector| *vector = with_changed_coordinates(*vector, old, new));
         }
     });

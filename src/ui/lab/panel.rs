@@ -347,6 +347,7 @@ fn looks_like(one: &Scene, other: &Scene) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
     #[test]
     fn names_change_nothing_that_was_measured() {
         let scene = Scene::demo();

@@ -251,12 +251,7 @@ impl Outliner {
             }
             let matches = |&index: &usize| {
                 let item = Item { kind, index };
-                let object = scene
-                    .objects
-                    .get(index)
-                    .filter(|_| kind == ItemKind::Object);
-                let group = object.map(|object| object.group.as_str());
-                let mut names = item.name(scene).into_iter().chain(group);
+                let mut names = item.name(scene).into_iter().chain(item.group(scene));
                 names.any(|name| name.to_lowercase().contains(&filter))
             };
             Entries::Filtered((0..count).filter(matches).collect())

@@ -135,11 +135,8 @@ impl Listed<'_> {
 
     /// The row of an item, or of its group if that is folded.
     fn row_of_item(&self, scene: &Scene, item: Item) -> Option<usize> {
-        self.lines.row_of(item).or_else(|| {
-            let is_object = item.kind == ItemKind::Object;
-            let object = scene.objects.get(item.index).filter(|_| is_object)?;
-            self.row_of_group(&object.group)
-        })
+        let row = self.lines.row_of(item);
+        row.or_else(|| self.row_of_group(item.group(scene)?))
     }
 
     /// All items between two entries of a list, inclusive; folded groups contribute all of their members.
