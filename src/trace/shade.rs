@@ -5,7 +5,7 @@
 
 use super::candidates::{Candidates, Targets};
 use super::cull::LightCandidates;
-use super::doubt::{Doubt, HitError, Uncertainty, is_filtered};
+use super::doubt::{Doubt, DoubtScope, HitError, Uncertainty, is_filtered};
 use super::footprint::Footprint;
 use super::hit_material::HitMaterial;
 use super::intersect::{Blocked, Kernel};
@@ -439,7 +439,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_be_on_surface));
+        let scope = DoubtScope::of(point.error.is_some(), !light.may_be_on_surface);
+        let doubt = Doubt::new(blur, scope);
         let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
         if point.error.is_some() {
