@@ -63,7 +63,7 @@ pub struct ChartArgs {
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_picture_size)]
     size: Option<(u32, u32)>,
     /// Name the cheapest method whose error is at most this: 55dB, or an RMSE (linear, 0–1)
-    #[arg(long, value_name = "ERROR", value_parser = parse_error)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_error, allow_hyphen_values = true)]
     within: Option<f64>,
     /// Name the most accurate method within this time: 16ms, 2s, or a number of milliseconds
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true)]

@@ -23,7 +23,7 @@ pub fn run(args: &CheckArgs) -> ExitCode {
     for path in &args.scenes {
         let problems = match Document::load(path) {
             Ok(Document { scene, .. }) => {
-                let missing = missing_meshes(path, &scene);
+                let missing = missing_meshes(path, &scene, "");
                 if missing.is_empty() {
                     say(&format!("{}: ok, {}", path.display(), contents(&scene)));
                 }

@@ -40,7 +40,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Measure samplings on this picture and use the cheapest one whose error is at most this: 55dB, or an RMSE (linear, 0–1); another run may choose a different one
-    #[arg(long, value_name = "ERROR", value_parser = parse_error, conflicts_with_all = ["antialias", "budget", "show"])]
+    #[arg(long, value_name = "ERROR", value_parser = parse_error, allow_hyphen_values = true, conflicts_with_all = ["antialias", "budget", "show"])]
     within: Option<f64>,
     /// Measure samplings on this picture and use the most accurate one within this time: 16ms, 2s, or a number of milliseconds; measuring takes extra time
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_negative_numbers = true, conflicts_with_all = ["antialias", "show"])]

@@ -1,9 +1,11 @@
 //! Reading of scenes for commands.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{CliError, report_warning};
-use crate::scene::{Document, Scene};
+use crate::scene::{Document, PathStep, Scene, message_at};
+use crate::words::counted;
 
 /// Reads a scene. Objects whose meshes are missing are reported on stderr; the rest is kept.
 ///
@@ -11,7 +13,7 @@ use crate::scene::{Document, Scene};
 /// [`CliError::Usage`], if the file is not a valid scene.
 pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
     let scene = Document::load(path)?.scene;
-    for problem in missing_meshes(path, &scene) {
+    for problem in missing_meshes(path, &scene, "") {
         report_warning(&problem);
     }
     Ok(scene)
@@ -25,20 +27,31 @@ pub fn read_scene(path: &Path) -> Result<Scene, CliError> {
 /// read.
 pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     let document = Document::load(path)?;
-    match missing_meshes(path, &document.scene).first() {
+    let consequence = ", and no frame is made without it";
+    let problems = missing_meshes(path, &document.scene, consequence);
+    match problems.into_iter().next() {
         None => Ok(document),
-        Some(problem) => {
-            let sentence = format!("{problem}; no frame is made without it");
-            Err(CliError::failed(sentence))
-        }
+        Some(problem) => Err(CliError::failed(problem)),
     }
 }
 
-/// A message for each object whose mesh could not be read.
-pub fn missing_meshes(path: &Path, scene: &Scene) -> Vec<String> {
-    let message = |(index, why): (usize, &str)| {
-        let name = &scene.objects[index].name;
-        format!("{}: {name:?} cannot be shown: {why}", path.display())
+/// A message for each mesh file that could not be read, at the place of the first object that needs it; `consequence`
+/// is added to what is said of that.
+pub fn missing_meshes(path: &Path, scene: &Scene, consequence: &str) -> Vec<String> {
+    let mut files: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, why) in scene.mesh_problems() {
+        files.entry(why).or_default().push(index);
+    }
+    let message = |(why, objects): (&str, Vec<usize>)| {
+        let first = objects[0];
+        let name = &scene.objects[first].name;
+        let names = match objects.len() - 1 {
+            0 => format!("{name:?}"),
+            more => format!("{name:?} and {}", counted(more, "more object")),
+        };
+        let part = [PathStep::Field("objects"), PathStep::Index(first)];
+        let sentence = format!("{names} cannot be shown{consequence}: {why}");
+        message_at(path, &part, sentence)
     };
-    scene.mesh_problems().map(message).collect()
+    files.into_iter().map(message).collect()
 }

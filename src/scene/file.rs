@@ -9,7 +9,7 @@ use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
 
 use super::check::{Problem, check};
-use super::locate::{claimed_version, has_inner_comments, header, locate};
+use super::locate::{PathStep, claimed_version, has_inner_comments, header, locate};
 use super::parse_errors::sentence;
 use super::whole::{MAX_BYTES, Scene, VERSION};
 use crate::files::{Stamp, absolute, back_up, read_at_most, read_file, time_of, write_atomic};
@@ -341,6 +341,16 @@ fn options() -> ron::Options {
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)
         .with_recursion_limit(MAX_DEPTH)
+}
+
+/// Returns a message about the value at `part` of a scene file that was read before, at its line and column if the
+/// file can still be read.
+pub fn message_at(path: &Path, part: &[PathStep], sentence: String) -> String {
+    let name = path.display().to_string();
+    match read_text(path) {
+        Ok(text) => refuse(&name, &text, locate(&text, part), sentence).to_string(),
+        Err(_) => format!("{name}: {sentence}"),
+    }
 }
 
 /// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports

@@ -243,7 +243,7 @@ pub const SHORTCUTS: &[Shortcut] = keys! {
     Timeline [ctrl(Key::T)] "Show or hide the timeline",
     StopRecording [plain(Key::T)] "Stop recording and make keys",
     Play [plain(Key::G)] "Play or pause",
-    AddKey [plain(Key::K)] "Set a key at the playhead",
+    AddKey [plain(Key::K)] "Set a camera key at the playhead",
     SelectAll [ctrl(Key::A)] "Select all objects and lights; over the timeline, all keys",
     LookThrough [plain(Key::C)] "Enter or leave the shot camera",
     PreviousKey [plain(Key::OpenBracket)] "Previous key",

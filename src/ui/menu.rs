@@ -205,7 +205,7 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     offered(ui, "Record flight", Command::Record);
     offered(ui, "Stop recording", Command::StopRecording);
     ui.separator();
-    offered(ui, "Add key", Command::AddKey);
+    offered(ui, "Add camera key", Command::AddKey);
     offered(ui, "Select all keys", Command::SelectKeys);
     offered(ui, "Previous key", Command::PreviousKey);
     offered(ui, "Next key", Command::NextKey);

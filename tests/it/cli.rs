@@ -1,5 +1,6 @@
 //! The command line, through the real binary.
 
+use std::fs;
 use std::path::Path;
 use std::process::Output;
 
@@ -165,7 +166,7 @@ fn the_camera_can_be_chosen() {
 #[test]
 fn wrong_words_and_wrong_files_exit_with_2() {
     let folder = folder();
-    let cases: [(&[&str], &str); 19] = [
+    let cases: [(&[&str], &str); 20] = [
         (&["render", DEMO], "--output <IMAGE>"),
         (
             &["render", DEMO, "-o", "a.jpg"],
@@ -206,6 +207,10 @@ fn wrong_words_and_wrong_files_exit_with_2() {
         (
             &["render", DEMO, "-o", "a.png", "--accelerator", "octree"],
             "expected auto, list, bvh",
+        ),
+        (
+            &["render", DEMO, "-o", "a.png", "--within", "-3dB"],
+            "expected decibels such as 55dB",
         ),
         (
             &["render", BAD, "-o", "a.png"],
@@ -291,6 +296,23 @@ fn check_answers_for_every_file() {
         "{complaint}"
     );
     assert!(complaint.trim_end().ends_with('^'), "{complaint}");
+}
+
+#[test]
+fn a_missing_mesh_is_named_once_where_it_is_first_needed() {
+    let folder = folder();
+    let object = |name| {
+        format!("Object(name: \"{name}\", color_pack: \"plane\", shape: Mesh(file: \"tree.ply\"))")
+    };
+    let objects = ["A", "B", "C"].map(object).join(",\n  ");
+    let scene = format!("Scene(version: 1, objects: [\n  {objects}])");
+    fs::write(folder.path().join("a.ron"), scene).expect("written");
+    let run = glint(folder.path(), &["check", "a.ron"]);
+    assert_eq!(run.status.code(), Some(2));
+    let said = text(&run.stderr);
+    let message = "a.ron:2:3: \"A\" and 2 more objects cannot be shown: cannot read ";
+    assert!(said.contains(message), "{said}");
+    assert_eq!(said.matches("tree.ply:").count(), 1, "{said}");
 }
 
 #[test]

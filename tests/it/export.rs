@@ -1319,7 +1319,9 @@ fn no_frame_is_made_without_a_mesh_that_is_missing() {
     ] {
         let said = stderr_of(glint(&words).args(["--width", "20"]), 1);
         assert!(
-            said.contains("knot.ply") && said.contains("no frame is made"),
+            said.contains(
+                "knot.ron:21:9: \"Knot\" cannot be shown, and no frame is made without it: "
+            ) && said.contains("knot.ply"),
             "{said}"
         );
         assert!(!made.exists());

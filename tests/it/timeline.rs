@@ -215,7 +215,7 @@ fn keys_are_set_overwritten_and_deleted() {
     harness.press(Modifiers::NONE, Key::K);
     assert_eq!(times(&harness), [0.0, 2.0], "the key there is overwritten");
     assert_eq!(harness.scene().animation.keys[1].value, view);
-    assert_eq!(harness.editor().undo_label(), Some("Add key"));
+    assert_eq!(harness.editor().undo_label(), Some("Add camera key"));
     // The key is selected: its values are in the inspector.
     harness.type_into("time", "3.5");
     assert_eq!(times(&harness), [0.0, 3.5]);

@@ -79,13 +79,14 @@ pub fn show(ui: &mut Ui, editor: &Editor, shown_fps: f64, graph: &mut bool, out:
     }
     ui.separator();
     record_button(ui, editor, width >= MIN_WIDTH_FOR_TEXT, out);
-    let words = "Set a key at the playhead from the current view, replacing one that is there";
+    let words =
+        "Set a camera key at the playhead from the current view, replacing one that is there";
     let add_key = if width >= MIN_WIDTH_FOR_TEXT {
-        Button::new("Add key")
+        Button::new("Add camera key")
     } else {
         Button::new(icons::text(icons::KEY))
     };
-    let add_key = ui.add(add_key).accessible_name("Add key");
+    let add_key = ui.add(add_key).accessible_name("Add camera key");
     on_click(ui, add_key, (words, Command::AddKey), out);
     if width >= MIN_WIDTH_WITHOUT_RATES {
         through_shot(ui, editor, out);
@@ -369,7 +370,7 @@ pub fn actions(command: &Command, editor: &Editor) -> Vec<Action> {
             let view = editor.shown().camera.clone();
             let (changed, place) = animation.with_key(time, view);
             vec![
-                Action::Edit(Edit::animation(changed, "Add key")),
+                Action::Edit(Edit::animation(changed, "Add camera key")),
                 Action::Select(Keys::from([KeyId::of_camera(place)]).into()),
             ]
         }
