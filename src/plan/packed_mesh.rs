@@ -287,7 +287,7 @@ impl<R: Real> PackedMesh<R> {
     }
 }
 
-/// The tree over the faces of a mesh, or over their slices if there are any, with boxes that are still to be fitted.
+/// The tree over the faces of a mesh, or over their slices if there are any.
 fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64>; 3]) -> Bvh<f64> {
     let member = |bounds| Member {
         bounds,
@@ -298,7 +298,7 @@ fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64
     }
     let entries = entries(slicings);
     let slice = |entry: usize| entries[entry];
-    Bvh::of_slices((entries.len(), slice), |face, slice| {
+    let mut bvh = Bvh::of_slices((entries.len(), slice), |face, slice| {
         let bounds = slicings[face].bounds(&corners(face), slice);
         if slicings[face].count() == 1 {
             return member(bounds);
@@ -307,7 +307,9 @@ fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64
         // mostly empty once the mesh is rotated.
         let (middle, radius) = bounds.ball();
         member(BoundingBox::around(&[middle]).widened(radius))
-    })
+    });
+    bvh.refit(|face, slice| member(slicings[face].tree_bounds(&corners(face), slice)));
+    bvh
 }
 
 /// Sets the thickness and the tip of each triangle, given their corner numbers, tree and borders, and updates the

@@ -183,13 +183,13 @@ mod tests {
         fn boxes_in_a_tree_hold_those_of_kernels_whichever_way_the_triangle_is_wound(
             (a, along, up) in (point(), point(), point()), width in 0.0..0.1_f64,
         ) {
-            let corners = [a, a + along, a + along * 0.3 + up * width];
-            let slicing = Slicing::of(&corners);
-            let [a, b, c] = corners;
-            for (slicing, corners) in [(slicing, [a, b, c]), (slicing.flipped(), [a, c, b])] {
+            let [a, b, c] = [a, a + along, a + along * 0.3 + up * width];
+            let original = Slicing::of(&[a, b, c]);
+            for (slicing, corners) in [(original, [a, b, c]), (original.flipped(), [a, c, b])] {
                 let single = corners.map(Vec3::in_precision::<f32>);
                 for index in 0..slicing.count() {
-                    let tree = slicing.tree_bounds(&[a, b, c], index);
+                    let tree = slicing.tree_bounds(&corners, index);
+                    prop_assert_eq!(tree, original.tree_bounds(&[a, b, c], index));
                     let BoundingBox { low, high } = slicing.bounds(&single, index);
                     let kernel = BoundingBox { low: low.in_precision(), high: high.in_precision() };
                     prop_assert!(holds(&tree, &kernel), "{index} of {slicing:?}: {tree:?} {kernel:?}");
