@@ -181,10 +181,12 @@ mod tests {
 
         #[test]
         fn boxes_in_a_tree_hold_those_of_kernels_whichever_way_the_triangle_is_wound(
-            (a, along, up) in (point(), point(), point()), width in 0.0..0.1_f64,
+            (a, along, up) in (point(), point(), point()), width in 0.0..0.03_f64,
         ) {
             let [a, b, c] = [a, a + along, a + along * 0.3 + up * width];
             let original = Slicing::of(&[a, b, c]);
+            // Trees round the box of a whole triangle outwards.
+            prop_assume!(original.count() > 1);
             for (slicing, corners) in [(original, [a, b, c]), (original.flipped(), [a, c, b])] {
                 let single = corners.map(Vec3::in_precision::<f32>);
                 for index in 0..slicing.count() {
