@@ -1,7 +1,6 @@
 //! The colours that come back along rays: ambient, diffuse, specular, shadows and mirrors.
 //!
-//! Rays that travel in step may hit different things: each kind of thing that was hit is lit for its own
-//! rays, each material colours its own part, and the results are put together.
+//! Rays that travel in step may hit different things: each kind is lit, and each material coloured, for its own rays.
 
 use super::candidates::{Candidates, Targets};
 use super::cull::LightCandidates;
