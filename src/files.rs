@@ -179,10 +179,11 @@ impl NewFile {
 pub fn remove_leftovers(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        // A process that still writes to the file holds its lock.
+        // A process that still writes to the file holds its lock. On some network shares, only a shared lock can be had
+        // of a file that is open for reading.
         if name.to_string_lossy().starts_with(UNFINISHED)
             && let Ok(file) = open_file(&entry.path())
-            && file.try_lock().is_ok()
+            && file.try_lock_shared().is_ok()
         {
             let _ = fs::remove_file(entry.path());
         }

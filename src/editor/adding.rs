@@ -1,13 +1,17 @@
 //! Adding and duplicating objects, lights and color packs.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
+use indexmap::IndexMap;
 
 use super::item::{Item, ItemKind};
 use super::names::{
     Spot, copy_offset, free_light_name, free_object_name, free_pack_name, offset_to_free_place,
 };
 use crate::scene::{
-    ColorPack, Light, LightObj, Object, Owner, Scene, Shape, Track, default_intensity, light_pack,
+    ColorPack, Light, LightObj, Names, Object, Owner, Packs, Scene, Shape, Track,
+    default_intensity, light_pack,
 };
 
 /// Colours of new objects, used in turn: easy to tell from each other and from a grey floor.
@@ -143,24 +147,41 @@ fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, offset: DVec3) {
     }
 }
 
-/// Gives the object at `index` its own copy of its color pack, if others use that pack too.
-pub fn make_pack_unique(scene: &mut Scene, index: usize) {
-    let Some(object) = scene.objects.get(index) else {
-        return;
-    };
-    let Some(pack_index) = scene.color_packs.get_index_of(&object.color_pack) else {
-        return;
-    };
-    let is_shared = Item::users_of_pack(scene, &object.color_pack)
-        .nth(1)
-        .is_some();
-    if !is_shared {
+/// Gives each of the objects at these indices its own copy of its color pack, unless it is the only one that uses it.
+pub fn make_packs_unique(scene: &mut Scene, objects: &[usize]) {
+    let mut users: HashMap<String, usize> = HashMap::new();
+    for item in Item::everything(scene).filter(|item| item.kind != ItemKind::Pack) {
+        if let Some(pack) = item.color_pack(scene) {
+            *users.entry(pack.to_owned()).or_default() += 1;
+        }
+    }
+    let mut names = Names::new(scene.color_packs.keys().map(String::as_str));
+    let mut copies: HashMap<String, Vec<String>> = HashMap::new();
+    for &index in objects {
+        let Some(pack) = scene
+            .objects
+            .get(index)
+            .map(|object| object.color_pack.clone())
+        else {
+            continue;
+        };
+        if let Some(others @ 2..) = users.get_mut(&pack) {
+            *others -= 1;
+            let copy = names.take(&pack);
+            scene.objects[index].color_pack.clone_from(&copy);
+            copies.entry(pack).or_default().push(copy);
+        }
+    }
+    if copies.is_empty() {
         return;
     }
-    if let Some(copy) = duplicate(scene, Item::pack(pack_index)) {
-        let name = copy.name(scene).unwrap_or_default().to_owned();
-        scene.objects[index].color_pack = name;
+    let mut packs = IndexMap::new();
+    for (name, pack) in scene.color_packs.iter() {
+        packs.insert(name.clone(), pack.clone());
+        let copies = copies.remove(name).unwrap_or_default();
+        packs.extend(copies.into_iter().map(|copy| (copy, pack.clone())));
     }
+    scene.color_packs = Packs::from(packs);
 }
 
 /// Returns the name of an unused color pack that nobody has edited: with the default values, or with those of a new

@@ -200,7 +200,10 @@ impl AnimationState {
         } else {
             pose(scene, time)
         };
-        if is_new || shown != self.shown {
+        // Bookmarks and keys need not change anything in the picture.
+        let looks_new =
+            |shown: &Scene| shown.camera != self.shown.camera || !shown.looks_same_as(&self.shown);
+        if looks_new(&shown) {
             self.revision += 1;
         }
         self.shown = shown;

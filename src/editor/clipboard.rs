@@ -93,7 +93,7 @@ pub fn read(text: &str, scene: &Scene) -> Result<Scene, SceneError> {
         ("", text)
     };
     let whole = format!(
-        "Scene(version: 1, color_packs: {{{packs}}}, objects: [\n{objects}\n], lights: [{lights}])"
+        "Scene(version: 1, color_packs: {{{packs}}}, objects: [\n{objects}\n], lights: [\n{lights}\n])"
     );
     let mut read = Document::from_text(&whole)?.scene;
     // The color packs as they are in the scene.
@@ -210,10 +210,11 @@ fn behind_originals(scene: &Scene, pasted: &Scene, new: Range<usize>) -> Option<
 /// or another group of the same name. A part of a group joins that group, and so does a single object in any case: it
 /// may have been cut from there.
 fn new_groups(scene: &Scene, pasted: &Scene) -> HashMap<String, String> {
-    let scene_groups = members(scene);
-    let mut taken = Names::new(scene_groups.keys().copied());
+    let (scene_groups, pasted_groups) = (members(scene), members(pasted));
+    // The other pasted groups keep their names if they can.
+    let mut taken = Names::new(scene_groups.keys().chain(pasted_groups.keys()).copied());
     let mut new = HashMap::new();
-    for (group, pasted_members) in members(pasted) {
+    for (group, pasted_members) in pasted_groups {
         let Some(scene_members) = scene_groups.get(group) else {
             continue;
         };

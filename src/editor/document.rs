@@ -444,7 +444,6 @@ impl Editor {
         self.revision += 1;
         let selection = std::mem::take(&mut self.selection);
         self.select(selection);
-        self.leave_still();
-        self.animation_state.update(&self.scene);
+        self.show_scene();
     }
 }

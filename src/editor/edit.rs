@@ -12,7 +12,7 @@ use crate::scene::{
 };
 use crate::words::{counted, listed};
 
-use super::adding::{add_light, add_object, add_pack, duplicate, make_pack_unique};
+use super::adding::{add_light, add_object, add_pack, duplicate, make_packs_unique};
 use super::arrange::{Arrangement, arrange, group, move_within};
 use super::clipboard::paste;
 use super::item::{Item, ItemKind};
@@ -63,8 +63,8 @@ pub enum Edit {
     Move(Vec<Item>, usize),
     /// Moves objects within their list, and into another group.
     Arrange(Arrangement),
-    /// Gives this object its own copy of its color pack.
-    MakePackUnique(usize),
+    /// Gives each of these objects its own copy of its color pack.
+    MakePacksUnique(Vec<usize>),
     /// Removes each color pack that equals an earlier one, which replaces it everywhere.
     MergePacks,
     /// Puts the objects at these indices into the group of this name; an empty name takes them out of their groups.
@@ -235,8 +235,9 @@ impl Edit {
                 let objects = arrangement.objects.iter().copied().map(Item::object);
                 format!("Move {}", names(&objects.collect::<Vec<_>>()))
             }
-            Self::MakePackUnique(index) => {
-                format!("{}: own color pack", name(Item::object(*index)))
+            Self::MakePacksUnique(objects) => {
+                let objects = objects.iter().copied().map(Item::object);
+                format!("{}: own color pack", names(&objects.collect::<Vec<_>>()))
             }
             Self::MergePacks => "Merge equal packs".to_owned(),
             Self::RenameGroup(from, to) => format!("Rename {from} to {to}"),
@@ -281,7 +282,7 @@ impl Edit {
             Self::Delete(items) => delete(scene, items)?,
             Self::Move(items, to) => return Ok(move_items(scene, items, to)),
             Self::Arrange(arrangement) => return Ok(arrange(scene, arrangement)),
-            Self::MakePackUnique(index) => make_pack_unique(scene, index),
+            Self::MakePacksUnique(objects) => make_packs_unique(scene, &objects),
             Self::MergePacks => scene.merge_equal_packs(),
             Self::RenameGroup(from, to) => rename_group(scene, &from, &to)?,
             Self::Group(members, name) => return Ok(group(scene, &members, &name)),

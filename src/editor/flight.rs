@@ -92,6 +92,15 @@ impl Editor {
         }
     }
 
+    /// Shows the scene as it is now. A still picture that still shows it stays.
+    pub(super) fn show_scene(&mut self) {
+        let before = self.shown_revision();
+        self.animation_state.update(&self.scene);
+        if self.shown_revision() != before {
+            self.leave_still();
+        }
+    }
+
     /// Returns from the still picture, which is out of date, to the live view.
     pub(super) fn leave_still(&mut self) {
         if self.mode == Mode::HighRes {

@@ -60,7 +60,9 @@ impl History {
             return;
         }
         self.gesture = Some(label.clone());
-        let bytes = before.scene.unshared_bytes(after);
+        // About as much is selected after the step, which may be noted as well.
+        let selected = size_of_val(before.selection.items()) * 2;
+        let bytes = before.scene.unshared_bytes(after) + selected;
         self.done.push_back(Step {
             label,
             other_side: before,

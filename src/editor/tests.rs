@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use glam::DVec3;
 
 use super::action::STEP;
@@ -114,7 +116,7 @@ fn hiding_leaves_keys_alone_and_joining_takes_them_along() {
 #[test]
 fn colors_that_joining_loses_are_said_until_it_is_undone() {
     let mut editor = Editor::demo();
-    editor.apply(Action::Edit(Edit::MakePackUnique(3)));
+    editor.apply(Action::Edit(Edit::MakePacksUnique(vec![3])));
     editor.end_gesture();
     editor.apply(Action::Edit(Edit::Join(vec![2, 3])));
     let said = editor.messages.last().expect("a message");
@@ -186,7 +188,7 @@ fn lights_beside_each_other_are_so_anywhere() {
 #[test]
 fn a_unique_pack_leaves_the_others_alone() {
     let mut editor = Editor::demo();
-    editor.apply(Action::Edit(Edit::MakePackUnique(2)));
+    editor.apply(Action::Edit(Edit::MakePacksUnique(vec![2])));
     let scene = editor.scene();
     assert_eq!(scene.objects[2].color_pack, "tetrahedron 2");
     assert_eq!(
@@ -194,6 +196,25 @@ fn a_unique_pack_leaves_the_others_alone() {
         scene.color_packs["tetrahedron"]
     );
     assert_eq!(Item::users_of_pack(scene, "tetrahedron").count(), 5);
+    // Of all that share it, one keeps it.
+    editor.apply(Action::Edit(Edit::MakePacksUnique((0..8).collect())));
+    let scene = editor.scene();
+    let packs: HashSet<&str> = scene
+        .objects
+        .iter()
+        .map(|object| &*object.color_pack)
+        .collect();
+    assert_eq!(packs.len(), 9, "{packs:?}");
+    let order: Vec<&String> = scene.color_packs.keys().collect();
+    assert_eq!(
+        order[2..6],
+        [
+            "tetrahedron",
+            "tetrahedron 3",
+            "tetrahedron 4",
+            "tetrahedron 5"
+        ]
+    );
 }
 
 #[test]
@@ -272,7 +293,7 @@ fn any_edit() -> impl Strategy<Value = Action> {
         item.clone().prop_map(Edit::Duplicate),
         (prop::collection::vec(item, 1..4), 0..12_usize)
             .prop_map(|(items, to)| Edit::Move(items, to)),
-        (0..12_usize).prop_map(Edit::MakePackUnique),
+        prop::collection::vec(0..12_usize, 1..4).prop_map(Edit::MakePacksUnique),
     ]
     .prop_map(Action::Edit)
 }

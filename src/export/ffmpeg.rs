@@ -16,6 +16,9 @@ use crate::files::absolute;
 use crate::image::Format;
 use crate::words::for_shell;
 
+/// Maximum number of frames that a command line names one by one.
+const MAX_NAMED_FILES: usize = 8;
+
 /// Has ffmpeg make a video in the file `unfinished`, which is to be moved to `path`, with these arguments for the
 /// codec.
 ///
@@ -151,6 +154,9 @@ fn command(sequence: &Sequence, path: &Path, codec: &str) -> Option<String> {
         return Some(format!(
             "ffmpeg -framerate {fps} -start_number {first} -i {input} -frames:v {count} {codec} {output}"
         ));
+    }
+    if count > MAX_NAMED_FILES {
+        return None;
     }
     let files = sequence.frames.iter();
     let files =

@@ -93,6 +93,11 @@ impl Triangles {
         &self.faces
     }
 
+    /// Number of bytes that they take in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.points()) + size_of_val(self.faces())
+    }
+
     /// Estimated number of bytes that they take as text in a scene file.
     pub fn bytes_of_text(&self) -> u64 {
         // Digits of points are averaged over a sample; those of faces are taken from the largest index.

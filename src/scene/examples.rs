@@ -96,4 +96,16 @@ mod tests {
         }
         assert_eq!(count, EXAMPLES.len());
     }
+
+    #[test]
+    fn saved_examples_have_their_meshes_in_them() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for example in &EXAMPLES {
+            let (document, path) = (example.document(), folder.path().join("a.ron"));
+            document.save(&path).expect("saved");
+            let saved = Document::load(&path).expect("valid").scene;
+            assert_eq!(saved.mesh_problems().next(), None, "{}", example.name);
+            assert_eq!(saved.objects_bounds(), document.scene.objects_bounds());
+        }
+    }
 }

@@ -18,7 +18,7 @@ use super::material::{ColorPack, Packs};
 use super::notation;
 use super::object::{Light, LightObj, Object, default_intensity, default_true};
 use super::render::Render;
-use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
+use super::shape::{Mesh, MeshFiles, MeshSource, Shape, unshared_triangle_bytes};
 
 /// The scene-file version that is written, and the newest that is read.
 pub const VERSION: u32 = 1;
@@ -140,7 +140,12 @@ impl Scene {
         };
         let lists =
             self.objects.unshared_bytes(&other.objects) + self.lights.unshared_bytes(&other.lights);
-        size_of::<Self>() + packs + animation + lists
+        let meshes = if self.objects.is_same(&other.objects) {
+            0
+        } else {
+            unshared_triangle_bytes(self.mesh_sources(), other.mesh_sources())
+        };
+        size_of::<Self>() + packs + animation + lists + meshes
     }
 
     /// Returns the lowest and highest corner of the bounding box of all visible bounded objects and visible lights;
@@ -169,7 +174,8 @@ impl Scene {
         });
     }
 
-    /// Returns the scene for saving in `folder`: meshes whose files are missing or in another folder become inline.
+    /// Returns the scene for saving in `folder`: meshes whose files are missing, in another folder or in the program
+    /// itself become inline.
     #[must_use]
     pub fn inlined_for(&self, folder: &Path) -> Self {
         let missing = self.gone_mesh_files();
@@ -178,9 +184,13 @@ impl Scene {
         // The same folder can be spelled in several ways.
         elsewhere.retain(|own_folder| !is_same_file(own_folder, folder));
         self.with_sources(|source| {
-            let (own_folder, path) = source.file()?;
-            let is_unavailable = missing.contains(path) || elsewhere.contains(own_folder);
-            is_unavailable.then(|| source.inlined()).flatten()
+            let is_available = |(own_folder, path): (&Path, &str)| {
+                !missing.contains(path) && !elsewhere.contains(own_folder)
+            };
+            if source.file().is_some_and(is_available) {
+                return None;
+            }
+            source.inlined()
         })
     }
 

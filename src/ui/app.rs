@@ -26,12 +26,12 @@ use super::setup::Setup;
 use super::start::StartWatch;
 use super::step_size::StepSize;
 use super::still::Still;
-use super::timeline::{Overlay, Thumbs, TimelinePanel};
+use super::timeline::{Overlay, Thumbs, TimelinePanel, advance_playback, pause_for_typing};
 use super::toasts::Toasts;
 use super::tools::{Screen, Tools};
 use super::why::Why;
 use super::{help, theme};
-use crate::editor::{Action, Editor, Mode, Time};
+use crate::editor::{Action, Editor, Mode};
 use crate::image::Image;
 use crate::scene::{Aspect, Scene};
 use crate::worker::{Answer, RenderThreadError};
@@ -229,7 +229,9 @@ impl App {
                 }
                 ctx.request_repaint();
             }
-            Some(FileOutcome::ExportFolder(path)) => self.exports.choose_folder(&path),
+            Some(FileOutcome::ExportFolder(path)) => {
+                self.exports.choose_folder(&self.editor, &path);
+            }
             Some(FileOutcome::SaveImage(path)) => {
                 self.lab.leave();
                 self.editor.apply(Action::Show(Mode::HighRes));
@@ -247,21 +249,6 @@ impl App {
             }
             _ => {}
         }
-    }
-
-    /// Advances the playhead by real time during playback, and requests a repaint for the next frame.
-    fn advance_playback(&mut self, ctx: &Context) {
-        if !self.editor.timeline().is_playing {
-            return;
-        }
-        let passed = ctx.input(|input| input.unstable_dt);
-        self.editor
-            .apply(Action::Time(Time::Tick(f64::from(passed))));
-        let timeline = self.editor.timeline();
-        let animation = &self.editor.scene().animation;
-        let frame = 1.0 / animation.frames_per_second;
-        let remaining = timeline.shown_time(animation) + frame - timeline.playhead;
-        ctx.request_repaint_after_secs((remaining / timeline.speed).clamp(0.002, frame) as f32);
     }
 
     fn show_title(&mut self, ctx: &Context) {
@@ -297,7 +284,10 @@ impl eframe::App for App {
         }
         self.take_answers(ctx);
         self.exports.update(&mut self.editor, &self.pictures);
-        self.advance_playback(ctx);
+        if !self.finder.is_open {
+            pause_for_typing(ctx, &mut self.editor);
+        }
+        advance_playback(ctx, &mut self.editor);
         self.close_if_requested(ctx);
         let outcome = self.files.poll(ctx, &mut self.editor);
         self.act_on(ctx, outcome);
@@ -309,8 +299,7 @@ impl eframe::App for App {
             self.editor.notify(CLOSING.to_owned());
         } else if is_closing && self.closing.is_none() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            let outcome = self.files.start(ctx, &mut self.editor, Next::Quit);
-            self.act_on(ctx, outcome);
+            self.leave_to(ctx, Next::Quit);
         }
         self.follow_document();
         self.autosave.tick(ctx, &mut self.editor);

@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use egui::{Event, Key, KeyboardShortcut, Modifiers, Theme, Ui};
+use egui::text_selection::LabelSelectionState;
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Theme, Ui};
 use glam::DVec3;
 
 use super::dialogs::Ask;
@@ -299,6 +300,12 @@ pub fn all() -> impl Iterator<Item = (&'static Command, &'static str, Option<Key
 /// Returns the description of a command.
 pub fn description_of(command: &Command) -> Option<&'static str> {
     all().find_map(|(other, what, _)| (other == command).then_some(what))
+}
+
+/// Returns whether text of a message is selected.
+pub fn has_selected_text(ctx: &Context) -> bool {
+    let selected = ctx.plugin_opt::<LabelSelectionState>();
+    selected.is_some_and(|selected| selected.lock().has_selection())
 }
 
 /// Takes the keys of commands out of this frame's events and returns the commands. A key that repeats because it is

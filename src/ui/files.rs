@@ -351,6 +351,8 @@ impl Files {
         editor.begin(Ask::OpenScene.title());
         if matches!(next, Next::New | Next::Example(_)) {
             editor.begin(OUTSIDE);
+            // A scene that is still being read is no longer wanted.
+            self.reading.retain(|reading| !reading.is_scene);
         }
         match next {
             Next::New => editor.start_new(),

@@ -214,9 +214,12 @@ fn find_matches(ui: &Ui, (editor, recent): (&Editor, &[PathBuf]), text: &str) ->
     matches.extend(settings(editor).filter_map(|(entry, aliases)| {
         matches_query(&format!("{} {} {aliases}", entry.name, entry.right_text)).then_some(entry)
     }));
-    // A scene may have very many things.
+    // A scene may have very many things: those are left out that would come last.
     let room = MAX_MATCHES.saturating_sub(matches.len());
-    matches.extend(scene_items(editor, matches_query).take(room));
+    let begins = |name: &str| name.to_lowercase().starts_with(&text);
+    let first = scene_items(editor, |name| matches_query(name) && begins(name));
+    let others = scene_items(editor, |name| matches_query(name) && !begins(name));
+    matches.extend(first.chain(others).take(room));
     matches.sort_by_cached_key(|entry| {
         let rank = rank((&entry.name, aliases_of(entry)), &text);
         (!entry.is_enabled, rank)

@@ -16,7 +16,8 @@ impl Hinted for Response {
         if self.ctx.input(|input| input.pointer.any_down()) {
             return self;
         }
-        self.on_hover_text(text.into())
+        let text = text.into();
+        self.on_disabled_hover_text(&text).on_hover_text(text)
     }
 
     fn hint_beside(&self, ui: &Ui, text: &str) {

@@ -1,5 +1,7 @@
 //! Commands that act on everything that is selected.
 
+use std::collections::HashSet;
+
 use crate::editor::{Action, Arrangement, Edit, Editor, Item, ItemKind, Selection, excerpt};
 use crate::scene::Scene;
 use crate::words::counted;
@@ -36,7 +38,8 @@ pub fn with_same_pack(scene: &Scene, selected: &Selection) -> Selection {
     let wearing = pack
         .into_iter()
         .flat_map(|pack| Item::users_of_pack(scene, pack));
-    let others = wearing.filter(|other| !selected.has(*other));
+    let own: HashSet<Item> = selected.items().iter().copied().collect();
+    let others = wearing.filter(|other| !own.contains(other));
     // The previous selection comes last, so that the inspector keeps showing its last item.
     Selection::all(others.chain(selected.items().iter().copied()))
 }

@@ -1,6 +1,6 @@
 //! Changes of the open file by other programs: the file is reloaded, or compared with unsaved changes.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime};
@@ -46,6 +46,8 @@ pub struct Watch {
     checked_objects: Option<(List<Object>, Vec<WatchedMesh>)>,
     /// Marks of those files at the last check, and marks of the state that was last handed out to be read.
     mesh_marks: HashMap<PathBuf, [Option<Marks>; 2]>,
+    /// Mesh files that were reported as gone.
+    gone_meshes: HashSet<PathBuf>,
 }
 
 impl Watch {
@@ -131,16 +133,21 @@ impl Watch {
     pub fn changed_meshes(&mut self, editor: &Editor) -> Vec<(PathBuf, String)> {
         self.update_meshes(editor);
         let files = self.checked_objects.iter().flat_map(|(_, files)| files);
-        let mesh_marks = &mut self.mesh_marks;
+        let (mesh_marks, gone_meshes) = (&mut self.mesh_marks, &mut self.gone_meshes);
         let mut is_any_changing = false;
         let changed = files.filter(|file| {
             let full_path = file.full_path();
             let now = marks_of_mesh(&full_path);
-            let [last, requested] = mesh_marks.entry(full_path).or_default();
+            let [last, requested] = mesh_marks.entry(full_path.clone()).or_default();
             let is_unchanged = std::mem::replace(last, now) == now;
             is_any_changing |= !is_unchanged;
-            // A deleted file keeps its mesh in the window. A file that was broken in between may be as it was read.
-            let must_read = is_unchanged && now.is_some() && now != requested.or(file.read);
+            // Reading a deleted file reports it once; its mesh stays in the window. A file that was broken or gone in
+            // between may be as it was read.
+            let must_read = is_unchanged
+                && match now {
+                    None => file.read.is_some() && gone_meshes.insert(full_path.clone()),
+                    Some(_) => gone_meshes.remove(&full_path) || now != requested.or(file.read),
+                };
             if must_read {
                 *requested = now;
             }

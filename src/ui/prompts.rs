@@ -192,7 +192,9 @@ impl PathPrompt {
 
     /// Returns the text of the primary button.
     fn button_text(&self) -> &'static str {
-        if !self.ask.writes() {
+        if self.ask == Ask::ExportFolder {
+            "Use folder"
+        } else if !self.ask.writes() {
             "Open file"
         } else if self.is_asked() {
             "Replace it"

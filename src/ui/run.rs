@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use egui::gui_zoom::{zoom_in, zoom_out};
-use egui::{Context, Key, Popup, ViewportCommand};
+use egui::{Context, Key, Memory, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
-use super::commands::{Command, Next, Zoom, description_of};
+use super::commands::{Command, Next, Zoom, description_of, has_selected_text};
 use super::dropped::Dropped;
 use super::interchange::import_path;
 use super::layout::Below;
@@ -79,10 +79,7 @@ impl App {
         }
         match dropped {
             None => {}
-            Some(Dropped::Scene(path)) => {
-                let outcome = self.files.start(ctx, &mut self.editor, Next::Open(path));
-                self.act_on(ctx, outcome);
-            }
+            Some(Dropped::Scene(path)) => self.leave_to(ctx, Next::Open(path)),
             Some(Dropped::Parts { path: Some(_), .. }) if self.files.is_asking() => {
                 self.editor
                     .notify("Answer the open question first".to_owned());
@@ -95,6 +92,18 @@ impl App {
                     import_path(&mut self.editor, &path);
                 }
             }
+        }
+    }
+
+    /// Leaves the document, after a text that is being edited was taken over.
+    pub(super) fn leave_to(&mut self, ctx: &Context, next: Next) {
+        let command = Command::Leave(next);
+        if ctx.text_edit_focused() && !self.files.is_asking() {
+            ctx.memory_mut(Memory::stop_text_input);
+            self.deferred.push(command);
+            ctx.request_repaint();
+        } else {
+            self.run(ctx, command);
         }
     }
 
@@ -117,6 +126,8 @@ impl App {
             {
                 self.run(ctx, command);
             }
+            // The text is copied by the panel that shows it.
+            Command::Copy | Command::Cut if has_selected_text(ctx) => {}
             Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
                 if self.copy(ctx) && command == Command::Cut {
                     self.run(ctx, Command::Delete);

@@ -61,7 +61,8 @@ impl Shared {
         lock(&self.planner)
     }
 
-    /// Puts a picture into the slot of its kind, replacing one that was not taken yet.
+    /// Puts a picture into the slot of its kind, replacing one that was not taken yet unless that shows a later
+    /// revision: a picture that is to be saved may be finished after a newer one that is only to be shown.
     pub fn publish(&self, frame: Frame) {
         let mut outbox = self.outbox();
         let slot = if frame.is_still {
@@ -69,7 +70,10 @@ impl Shared {
         } else {
             &mut outbox.live
         };
-        *slot = Some(frame);
+        let is_newer = |waiting: &Frame| waiting.revision > frame.revision;
+        if !slot.as_ref().is_some_and(is_newer) {
+            *slot = Some(frame);
+        }
         drop(outbox);
         (self.wake)();
     }

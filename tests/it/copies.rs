@@ -70,3 +70,21 @@ fn members_of_another_group_of_the_same_name_are_a_group_of_their_own() {
         assert_eq!(scene.objects[item.index].group, "Group 2");
     }
 }
+
+#[test]
+fn two_pasted_groups_stay_two() {
+    let mut scene = Scene::demo();
+    let group = |scene: &mut Scene, members: &[usize], name: &str| {
+        let edit = Edit::Group(members.to_vec(), name.to_owned());
+        edit.apply(scene).expect("grouped");
+    };
+    let mut elsewhere = scene.clone();
+    group(&mut elsewhere, &[0, 1], "Group 1");
+    group(&mut elsewhere, &[2, 3], "Group 2");
+    group(&mut scene, &[4, 5], "Group 1");
+    let selected = Selection::all((0..4).map(Item::object));
+    let pasted = paste(&mut scene, &excerpt(&elsewhere, &selected));
+    let groups = pasted.iter().map(|item| &*scene.objects[item.index].group);
+    let groups: Vec<&str> = groups.collect();
+    assert_eq!(groups, ["Group 3", "Group 3", "Group 2", "Group 2"]);
+}

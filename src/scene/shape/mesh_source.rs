@@ -178,3 +178,19 @@ impl MeshSource {
         }
     }
 }
+
+/// Number of bytes of the triangles that are only among the first of these sources.
+pub fn unshared_triangle_bytes<'a>(
+    own: impl Iterator<Item = &'a MeshSource>,
+    others: impl Iterator<Item = &'a MeshSource>,
+) -> usize {
+    let by_address = |source: &'a MeshSource| {
+        let triangles = source.triangles();
+        (Arc::as_ptr(triangles), triangles.bytes())
+    };
+    let mut own: HashMap<_, usize> = own.map(by_address).collect();
+    for (address, _) in others.map(by_address) {
+        own.remove(&address);
+    }
+    own.into_values().sum()
+}

@@ -27,7 +27,7 @@ pub use describe::{Describe, Property, PropertyValue};
 pub use disc::Disc;
 pub use kinds::Shape;
 pub use mesh::Mesh;
-pub use mesh_source::{MeshFiles, MeshSource};
+pub use mesh_source::{MeshFiles, MeshSource, unshared_triangle_bytes};
 pub use plane::Plane;
 pub use plane_piece::{Outline, PlanePiece};
 pub use sphere::Sphere;

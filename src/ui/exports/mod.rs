@@ -116,10 +116,16 @@ impl Exports {
         self.kept.named()
     }
 
-    /// Sets the folder that the user chose in the dialog.
-    pub fn choose_folder(&mut self, folder: &Path) {
+    /// Sets the folder that the user chose in the dialog, and shows the window if it was closed meanwhile.
+    pub fn choose_folder(&mut self, editor: &Editor, folder: &Path) {
+        let folder = folder.display().to_string();
         if let Some(ShownSettings { settings, .. }) = &mut self.shown {
-            settings.folder = folder.display().to_string();
+            settings.folder = folder;
+        } else {
+            let mut settings = self.settings(editor);
+            settings.folder = folder;
+            self.kept.keep(SettingsOwner::of(editor), settings);
+            self.is_open = true;
         }
     }
 

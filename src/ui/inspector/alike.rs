@@ -113,10 +113,9 @@ pub fn for_all(scene: &Scene, selected: &[Item], edit: Edit, is_together: bool) 
             });
             (edits.collect(), field)
         }
-        Edit::MakePackUnique(_) => {
+        Edit::MakePacksUnique(_) => {
             let objects = selected.iter().filter(|item| item.kind == ItemKind::Object);
-            let edits = objects.map(|item| Edit::MakePackUnique(item.index));
-            (edits.collect(), "own color packs")
+            return Edit::MakePacksUnique(objects.map(|item| item.index).collect());
         }
         other => return other,
     };

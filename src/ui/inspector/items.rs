@@ -213,7 +213,7 @@ fn object(
             "Give each of these objects a color pack of its own"
         };
         if unique.hint(hint).clicked() {
-            out.edit(Edit::MakePackUnique(index));
+            out.edit(Edit::MakePacksUnique(vec![index]));
         }
     });
     chosen

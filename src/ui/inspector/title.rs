@@ -49,7 +49,8 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
     }
     if response.changed() {
         ui.data_mut(|data| data.insert_temp(id, (name.to_owned(), text)));
-    } else if !response.has_focus() {
+    } else if !ui.memory(|memory| memory.has_focus(id)) {
+        // Unlike the response, the memory keeps the focus while another window is in use.
         ui.data_mut(|data| data.remove::<(String, String)>(id));
     }
     None

@@ -91,7 +91,8 @@ pub enum Renaming {
 
 /// A text field in a row for a new name.
 pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str) -> Renaming {
-    if !ui.memory(|memory| memory.has_focus(id)) {
+    // A field that just lost the focus must tell so: its text is then taken or discarded.
+    if !ui.memory(|memory| memory.has_focus(id) || memory.had_focus_last_frame(id)) {
         ui.memory_mut(|memory| memory.request_focus(id));
         // Selected, so that typing replaces the old name.
         select_letters(ui, id, 0..name.chars().count());

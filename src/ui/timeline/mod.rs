@@ -20,6 +20,8 @@ mod length;
 
 mod transport;
 
+mod playback;
+
 use std::sync::Arc;
 
 use egui::{Rect, ScrollArea, Ui};
@@ -27,6 +29,7 @@ use egui::{Rect, ScrollArea, Ui};
 use self::graph::Graph;
 use self::key_rows::KeyRows;
 pub use self::overlay::Overlay;
+pub use self::playback::{advance_playback, pause_for_typing};
 use self::scale::Scale;
 pub use self::thumbs::Thumbs;
 pub use self::transport::{actions, clock};

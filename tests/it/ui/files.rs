@@ -618,6 +618,14 @@ fn a_mesh_file_that_another_program_writes_is_read_anew_before_and_after_what_is
     let file = file.expect("there");
     file.set_modified(time.expect("a time")).expect("set");
     harness.wait_for("the mesh again", |harness| !is_told(harness));
+    // So is one that is gone, until it is back.
+    let away = folder.join("away.obj");
+    std::fs::rename(&roof, &away).expect("moved");
+    harness.wait_for("the message", is_told);
+    assert!(harness.editor().is_dirty());
+    std::fs::rename(&away, &roof).expect("moved");
+    harness.wait_for("the mesh again", |harness| !is_told(harness));
+    assert!(!harness.editor().is_dirty());
     std::fs::write(&roof, "f 1 2 3\n").expect("written");
     harness.wait_for("the message", is_told);
     assert_eq!(top(&harness, 0), 7.0);

@@ -3,7 +3,7 @@
 use egui::{Event, Key, Modifiers, Theme};
 use egui_kittest::kittest::Queryable as _;
 use glint::editor::Mode;
-use glint::scene::{Scene, Shape, Sphere};
+use glint::scene::{Object, Scene, Shape, Sphere};
 use glint::ui::{Command, FLIGHT, SHORTCUTS};
 
 use crate::harness::{CTRL, EditorHarness};
@@ -164,6 +164,21 @@ fn the_finder_knows_what_menus_and_panels_do() {
     assert_eq!(harness.scene().objects.len(), before);
     let group = harness.editor().selection().group(harness.scene());
     assert_eq!(group, Some("Triangle 1"), "all pieces, as a group");
+}
+
+#[test]
+fn the_finder_has_room_for_what_begins_with_the_words() {
+    let mut scene = Scene::demo();
+    let ball = scene.objects[0].clone();
+    let named = |name: String| Object {
+        name,
+        ..ball.clone()
+    };
+    let red = (0..300).map(|number| named(format!("Red heron {number}")));
+    scene.objects = red.chain([named("Heron".to_owned())]).collect();
+    let mut harness = EditorHarness::on(scene);
+    find(&mut harness, "heron");
+    assert_eq!(harness.selected(), ["Heron"]);
 }
 
 #[test]
