@@ -194,9 +194,6 @@ impl Pictures {
     pub fn request_still(&mut self, editor: &Editor, save_to: Option<PathBuf>) {
         // A file gets the whole picture, which is then shown as well.
         let region = self.region.filter(|_| save_to.is_none());
-        let shown = self.shown_still(editor).filter(|_| save_to.is_some());
-        let whole = shown.filter(|frame| frame.step == 1 && frame.region.is_none());
-        let traced = whole.map(|frame| Arc::clone(&frame.image));
         self.still_requested = Some((editor.shown_revision(), still_size(editor), region));
         self.worker.request_still(StillJob {
             revision: editor.shown_revision(),
@@ -205,7 +202,6 @@ impl Pictures {
                 region,
                 ..RenderRequest::still(editor.shown())
             },
-            traced,
             save_to,
         });
     }

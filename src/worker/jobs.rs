@@ -168,8 +168,6 @@ pub struct StillJob {
     pub scene: Arc<Scene>,
     /// The picture.
     pub request: RenderRequest,
-    /// The finished picture, if it is on screen: 8-bit formats are then written without tracing it again.
-    pub traced: Option<Arc<Image>>,
     /// Where to write it. A picture to be saved outlives edits: it resumes when the live view is done.
     pub save_to: Option<PathBuf>,
 }

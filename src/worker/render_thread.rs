@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::{Arc, PoisonError};
+use std::sync::{Arc, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
 use super::budget::Budget;
@@ -43,6 +43,8 @@ struct KeptState {
     query: CachedQuery,
     /// The planner of still pictures.
     planner: Planner,
+    /// The last whole still picture while it is shown, and its revision: it is not traced again to be written in 8 bits.
+    still: (u64, Weak<Image>),
 }
 
 /// Runs jobs until told to quit. A panic in a job becomes an event, and the thread continues.
@@ -53,6 +55,7 @@ pub fn run(shared: &Shared, crew: Crew, threads: &Threads) {
         mapper: ObjectMapper::default(),
         query: CachedQuery::default(),
         planner: Planner::default(),
+        still: (0, Weak::new()),
     };
     let mut last_wake = Instant::now();
     while let Some((mut job, control)) = next_job(shared, crew) {
@@ -111,7 +114,7 @@ fn run_job(
         }
         Job::Query(job) => answer(shared, job, kept, control),
         Job::Thumbnail(job) => thumbnail(shared, job),
-        Job::Still(job) => still(shared, job, &mut kept.planner, control),
+        Job::Still(job) => still(shared, job, kept, control),
         Job::Export(_, exporting) => JobOutcome::Export(exporting.step(control)),
         Job::Lab(study) => {
             if study.step(control) {
@@ -280,23 +283,29 @@ fn thumbnail(shared: &Shared, job: &ThumbnailJob) -> JobOutcome {
 fn still(
     shared: &Shared,
     job: &StillJob,
-    planner: &mut Planner,
+    kept: &mut KeptState,
     control: &RenderControl,
 ) -> JobOutcome {
     let path = job.save_to.as_deref();
     let format = path.and_then(|path| Format::of_path(path).ok());
     let mut film = Film::new(format.unwrap_or(Format::Png));
-    if let (Some(path), Some(traced), Film::Levels(image)) = (path, &job.traced, &mut film) {
-        image.clone_from(traced);
+    let (revision, last) = (kept.still.0, kept.still.1.upgrade());
+    let size = (job.request.width as usize, job.request.height as usize);
+    let last = last.filter(|last| revision == job.revision && (last.width, last.height) == size);
+    if let (Some(path), Some(last), Film::Levels(image)) = (path, last, &mut film) {
+        image.clone_from(&last);
         report_written(shared, path, save_image(&film, path));
         return JobOutcome::Ended;
     }
-    planner.share_meshes(&shared.planner());
-    let Some(cost) = film.expose(planner, &job.scene, &job.request, control) else {
+    kept.planner.share_meshes(&shared.planner());
+    let Some(cost) = film.expose(&mut kept.planner, &job.scene, &job.request, control) else {
         return JobOutcome::Unfinished;
     };
     let written = path.map(|path| (path, save_image(&film, path)));
     let image = Arc::new(film.into_levels());
+    if job.request.region.is_none() {
+        kept.still = (job.revision, Arc::downgrade(&image));
+    }
     shared.publish(Frame {
         revision: job.revision,
         full_size: (image.width, image.height),

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use glint::image::Image;
 use glint::lab::Study;
 use glint::plan::RenderRequest;
 use glint::scene::{MAX_GRID, Object, Sampling, Scene, Sphere};
@@ -32,7 +31,6 @@ fn still(revision: u64, scene: &Arc<Scene>, side: u32) -> StillJob {
         revision,
         scene: Arc::clone(scene),
         request: picture,
-        traced: None,
         save_to: None,
     }
 }
@@ -245,21 +243,25 @@ fn a_picture_that_is_written_goes_on_where_it_was() {
 fn a_picture_that_is_on_screen_is_written_as_it_is() {
     let folder = tempfile::tempdir().expect("a folder");
     let worker = Worker::new(Some(1), || {}).expect("a render thread");
-    // A colour that tracing would not produce.
-    let mut image = Image::new(16, 16);
-    image.pixels.fill([1, 2, 3, 255]);
-    let image = Arc::new(image);
-    for (name, is_as_it_is) in [("a.png", true), ("a.exr", false)] {
+    let demo = Arc::new(Scene::demo());
+    worker.request_still(still(1, &demo, 16));
+    let frames = wait_for(&worker, |frame| frame.is_still);
+    let shown = &frames.last().expect("a picture").image;
+    // Another scene of the same revision, which there is not, shows what is traced.
+    let other = Arc::new(Scene::empty());
+    for (name, revision, is_as_it_is) in
+        [("a.png", 1, true), ("a.exr", 1, false), ("b.png", 2, false)]
+    {
         let path = folder.path().join(name);
         worker.request_still(StillJob {
-            traced: Some(Arc::clone(&image)),
             save_to: Some(path.clone()),
-            ..still(1, &Arc::new(Scene::demo()), 16)
+            ..still(revision, &other, 16)
         });
         wait_until("the file", || !worker.take_events().is_empty());
         let decoded = ::image::open(&path).expect("a picture").to_rgb8();
-        let is_all = decoded.pixels().all(|pixel| pixel.0 == [1, 2, 3]);
-        assert_eq!(is_all, is_as_it_is, "{name}: light is traced");
+        let own = shown.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b]);
+        let is_same = decoded.pixels().map(|pixel| pixel.0).eq(own);
+        assert_eq!(is_same, is_as_it_is, "{name}");
     }
 }
 

@@ -18,7 +18,6 @@ fn still(revision: u64, save_to: Option<&str>) -> Job {
         revision,
         scene: Arc::new(Scene::empty()),
         request: RenderRequest::sized(8, 8),
-        traced: None,
         save_to: save_to.map(PathBuf::from),
     })
 }
