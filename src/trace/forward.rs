@@ -53,8 +53,7 @@ impl<L: SimdFloat> Bounce<L> {
             self.packets.push(Packet::new(kernel, rays, active));
         }
         self.edge_detail = edges;
-        let scope = self.doubt_scope(kernel.plan);
-        if is_filtered::<L, TREE>() && scope != DoubtScope::Nothing {
+        if self.doubt_scope::<TREE>(kernel.plan) != DoubtScope::Nothing {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }
@@ -75,9 +74,12 @@ impl<L: SimdFloat> Bounce<L> {
     /// edge are equally near: the pixel changes by one step of the finest grid, or by what remains of a cell that is
     /// not divided. In 1 scene of 30, this is more than one level, and at most 7, in one pixel or a few; doubting them
     /// would make meshes take 1.2 times as long, and a mirror with a mesh 1.4 times.
-    fn doubt_scope(&self, plan: &Plan<L::Real>) -> DoubtScope {
+    #[inline(always)]
+    fn doubt_scope<const TREE: bool>(&self, plan: &Plan<L::Real>) -> DoubtScope {
         let is_tied = !plan.ties.is_empty();
-        if self.edge_detail != EdgeDetail::Signatures {
+        if !is_filtered::<L, TREE>() {
+            DoubtScope::Nothing
+        } else if self.edge_detail != EdgeDetail::Signatures {
             DoubtScope::of(plan.is_doubted(), !is_tied)
         } else if plan.is_doubted() && !is_tied && self.parents.is_empty() {
             DoubtScope::Ties
@@ -135,7 +137,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
         let culled_faces = self.culled_faces(plan);
-        let scope = self.doubt_scope(plan);
+        let scope = self.doubt_scope::<TREE>(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
@@ -292,7 +294,7 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_for_thin = self.looks_for_thin();
-        let doubts_colors = self.doubt_scope(kernel.plan) != DoubtScope::Ties;
+        let doubts_colors = self.doubt_scope::<TREE>(kernel.plan) != DoubtScope::Ties;
         let has_gaps =
             self.edge_detail >= EdgeDetail::Borders && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
