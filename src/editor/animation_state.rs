@@ -53,8 +53,16 @@ pub struct AnimationState {
     pub survey: Option<(Arc<Take>, Vec<Vec<Landmark>>)>,
     /// What to do once the survey arrives.
     pub pending: Option<Pending>,
-    /// Key lists made of recordings, each with the tolerance it was made with, in pixels.
-    simplified_keys: Vec<(f64, Vec<Key<Camera>>)>,
+    simplified_keys: Vec<SimplifiedKeys>,
+}
+
+/// A key list made of a recording.
+#[derive(Debug)]
+struct SimplifiedKeys {
+    take: Arc<Take>,
+    /// The tolerance it was made with, in pixels.
+    tolerance: f64,
+    keys: Vec<Key<Camera>>,
 }
 
 impl AnimationState {
@@ -96,19 +104,21 @@ impl AnimationState {
             worst_deviation(&self.path, &take, seen, recorded_span);
         let deviation = deviation * REFERENCE_HEIGHT;
         self.timeline.worst = Some(WorstDeviation { deviation, time });
-        let mut simplified = self.simplified_keys.iter();
-        let simplified = simplified.find(|(_, keys)| *keys == animation.keys);
-        self.timeline.is_edited = simplified.is_none() && !self.simplified_keys.is_empty();
-        if let Some((tolerance, _)) = simplified {
-            self.timeline.tolerance = *tolerance;
-        } else if deviation > HAND_EDITED_DEVIATION && self.simplified_keys.is_empty() {
+        let is_known = self.simplified_of(&take).next().is_some();
+        let tolerance = self
+            .simplified_of(&take)
+            .find_map(|known| (known.keys == animation.keys).then_some(known.tolerance));
+        self.timeline.is_edited = tolerance.is_none() && is_known;
+        if let Some(tolerance) = tolerance {
+            self.timeline.tolerance = tolerance;
+        } else if deviation > HAND_EDITED_DEVIATION && !is_known {
             self.timeline.is_edited = true;
-        } else if deviation.is_finite() && self.simplified_keys.is_empty() {
+        } else if deviation.is_finite() && !is_known {
             // Rounded up to hundredths, as the slider shows it, so that reading the slider back is not taken for a
             // change.
             self.timeline.tolerance = (deviation.max(MIN_TOLERANCE) * 100.0).ceil() / 100.0;
             let keys = animation.keys.clone();
-            self.remember_simplified(self.timeline.tolerance, keys);
+            self.remember_simplified(take, self.timeline.tolerance, keys);
         }
     }
 
@@ -116,37 +126,48 @@ impl AnimationState {
     /// show, by their times, whether the flight was stretched; if no such key is known, the first and the last key
     /// are taken as the ends.
     pub fn recorded_span(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
-        let simplified = self
-            .simplified_keys
-            .iter()
-            .rev()
-            .map(|(_, simplified)| simplified);
-        let mut spans = simplified.filter_map(|simplified| {
-            // A flight that pauses or returns has several equal keys, which tell nothing.
-            let times_if_unique = |key: &Key<Camera>| {
-                let mut equal = simplified.iter().filter(|other| other.value == key.value);
-                let only = equal.next().filter(|_| equal.next().is_none())?;
-                Some((only.time, key.time))
-            };
-            let first = keys.iter().take(KEYS_PROBED).find_map(times_if_unique)?;
-            let last = keys
-                .iter()
-                .rev()
-                .take(KEYS_PROBED)
-                .find_map(times_if_unique)?;
-            let (start, end) = ends_of(simplified)?;
-            let scale = (last.1 - first.1) / (last.0 - first.0);
-            let at = |time: f64| first.1 + (time - first.0) * scale;
-            (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
-        });
+        let take = self.scene.animation.take.as_ref();
+        let simplified = take.into_iter().flat_map(|take| self.simplified_of(take));
+        let mut spans = simplified.filter_map(
+            |SimplifiedKeys {
+                 keys: simplified, ..
+             }| {
+                // A flight that pauses or returns has several equal keys, which tell nothing.
+                let times_if_unique = |key: &Key<Camera>| {
+                    let mut equal = simplified.iter().filter(|other| other.value == key.value);
+                    let only = equal.next().filter(|_| equal.next().is_none())?;
+                    Some((only.time, key.time))
+                };
+                let first = keys.iter().take(KEYS_PROBED).find_map(times_if_unique)?;
+                let last = keys
+                    .iter()
+                    .rev()
+                    .take(KEYS_PROBED)
+                    .find_map(times_if_unique)?;
+                let (start, end) = ends_of(simplified)?;
+                let scale = (last.1 - first.1) / (last.0 - first.0);
+                let at = |time: f64| first.1 + (time - first.0) * scale;
+                (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
+            },
+        );
         let ends = || ends_of(keys).filter(|(first, last)| first < last);
         spans.next().or_else(ends)
     }
 
-    /// Notes that `keys` were made of the recording with this tolerance, in pixels.
-    pub fn remember_simplified(&mut self, tolerance: f64, keys: Vec<Key<Camera>>) {
-        self.simplified_keys.retain(|(_, other)| *other != keys);
-        self.simplified_keys.push((tolerance, keys));
+    /// The key lists made of a recording, the newest first.
+    fn simplified_of(&self, take: &Arc<Take>) -> impl Iterator<Item = &SimplifiedKeys> {
+        let simplified = self.simplified_keys.iter().rev();
+        simplified.filter(move |one| one.take == *take)
+    }
+
+    /// Notes that `keys` were made of a recording with this tolerance, in pixels.
+    pub fn remember_simplified(&mut self, take: Arc<Take>, tolerance: f64, keys: Vec<Key<Camera>>) {
+        self.simplified_keys.retain(|other| other.keys != keys);
+        self.simplified_keys.push(SimplifiedKeys {
+            take,
+            tolerance,
+            keys,
+        });
         let excess = self.simplified_keys.len().saturating_sub(MAX_REMEMBERED);
         self.simplified_keys.drain(..excess);
     }

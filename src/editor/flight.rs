@@ -178,7 +178,7 @@ impl Editor {
                 let recorded_span = self.animation_state.recorded_span(&old.animation.keys);
                 let keys = fit_to_span(recorded_span, self.simplified(&take));
                 self.animation_state
-                    .remember_simplified(pixels, keys.clone());
+                    .remember_simplified(take, pixels, keys.clone());
                 let animation = Animation {
                     keys,
                     ..Animation::clone(&old.animation)
@@ -237,7 +237,7 @@ impl Editor {
         };
         let tolerance = timeline.tolerance;
         self.animation_state
-            .remember_simplified(tolerance, keys.clone());
+            .remember_simplified(Arc::clone(&take), tolerance, keys.clone());
         let animation = Animation {
             keys,
             take: Some(take),

@@ -1,6 +1,6 @@
 //! A row of the outliner.
 
-use egui::{AtomExt as _, Button, Color32, Id, Key, Rect, Sense, Ui, vec2};
+use egui::{AtomExt as _, Button, Color32, Id, Rect, Sense, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 
 use crate::editor::{Item, ItemKind};
@@ -91,8 +91,10 @@ pub enum Renaming {
 
 /// A text field in a row for a new name.
 pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str) -> Renaming {
-    // A field that just lost the focus must tell so: its text is then taken or discarded.
-    if !ui.memory(|memory| memory.has_focus(id) || memory.had_focus_last_frame(id)) {
+    let has_lost_focus =
+        |ui: &Ui| ui.memory(|memory| memory.had_focus_last_frame(id) && !memory.has_focus(id));
+    // A field that has just lost the focus must not get it back: its text is taken over or discarded.
+    if !ui.memory(|memory| memory.has_focus(id)) && !has_lost_focus(ui) {
         ui.memory_mut(|memory| memory.request_focus(id));
         // Selected, so that typing replaces the old name.
         select_letters(ui, id, 0..name.chars().count());
@@ -103,11 +105,9 @@ pub fn rename_field(ui: &mut Ui, row: Rect, (label, id): (&str, Id), name: &str)
     let is_left = ui.input(|input| {
         let at = input.pointer.interact_pos();
         let is_within = at.is_some_and(|at| row.contains(at));
-        input.key_pressed(Key::Enter)
-            || input.key_pressed(Key::Escape)
-            || (input.pointer.any_pressed() && !is_within)
+        input.pointer.any_pressed() && !is_within
     });
-    if is_left {
+    if is_left || has_lost_focus(ui) {
         Renaming::Cancelled
     } else {
         Renaming::Ongoing

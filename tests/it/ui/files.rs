@@ -909,3 +909,14 @@ fn a_typed_name_is_taken_before_the_click_that_ends_it_and_belongs_to_its_item()
     let ball = &harness.scene().objects[0];
     assert_eq!((ball.name.as_str(), ball.visible), ("Ball", false));
 }
+
+#[test]
+fn a_number_being_typed_counts_before_another_scene_is_opened() {
+    let mut harness = EditorHarness::with(|_| Vec::new(), Some(&demo_text(20.0)));
+    harness.click("Sphere 1");
+    harness.put_cursor_into("radius");
+    harness.type_text("50");
+    harness.drop_file("scenes/mirrors.ron".into());
+    assert_eq!(radius(harness.scene(), 0), 50.0);
+    assert!(harness.sees("Save changes"));
+}

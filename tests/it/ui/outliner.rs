@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers, MouseWheelUnit, PointerButton};
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
-use glint::scene::{Scene, Shape, Sphere};
+use glint::scene::{Document, Scene, Shape, Sphere};
 
 use super::tools::{click, drop_at, hover, pull};
 use crate::harness::{CTRL, EditorHarness};
@@ -302,4 +302,22 @@ fn lights_that_are_added_stand_beside_each_other() {
     for (place, own) in places.iter().enumerate() {
         assert!(!places[..place].contains(own), "{places:?}");
     }
+}
+
+#[test]
+fn a_name_being_typed_is_saved_and_one_that_was_discarded_does_not_come_back() {
+    let mut harness = EditorHarness::on(Scene::demo());
+    let saved = harness.folder.path().join("given.ron");
+    harness.click("Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.type_text("Glass");
+    harness.press(Modifiers::NONE, Key::Escape);
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(harness.scene().objects[0].name, "Sphere 1");
+    harness.press(Modifiers::NONE, Key::F2);
+    harness.type_text("Glass");
+    harness.press(CTRL, Key::S);
+    let saved = Document::load(&saved).expect("saved").scene;
+    assert_eq!(saved.objects[0].name, "Glass");
 }

@@ -194,3 +194,26 @@ fn a_menu_closes_when_its_entry_is_chosen_by_a_key() {
     harness.press(Modifiers::ALT, Key::F);
     assert_eq!(harness.scene().camera, before);
 }
+
+#[test]
+fn a_bookmark_leaves_the_finished_picture_on_screen() {
+    let mut harness = EditorHarness::new();
+    harness.press(Modifiers::NONE, Key::H);
+    harness.press(CTRL, Key::B);
+    assert_eq!(harness.scene().bookmarks.len(), 1);
+    assert_eq!(harness.editor().mode, Mode::HighRes);
+    harness.click("Sphere 1");
+    harness.type_into("radius", "40");
+    assert_eq!(harness.editor().mode, Mode::Live);
+}
+
+#[test]
+fn playback_pauses_when_a_text_is_edited() {
+    let mut harness = EditorHarness::new();
+    harness.drop_file("scenes/flight.ron".into());
+    harness.press(Modifiers::NONE, Key::G);
+    assert!(harness.editor().timeline().is_playing);
+    harness.click("Sphere 1");
+    harness.put_cursor_into("radius");
+    assert!(!harness.editor().timeline().is_playing);
+}
