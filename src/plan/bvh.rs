@@ -22,6 +22,8 @@ pub struct Node {
     pub planes: [[[f32; GROUP]; 3]; 2],
     /// The content of each box: the number of a member, or that of a node with the bit [`IS_NODE`] set.
     children: [u32; GROUP],
+    /// Which slice of a member is in each box; only known in the nodes of a tree.
+    slices: [u8; GROUP],
     /// The smallest thickness in each box, see [`crate::primitive::Primitive::thickness`]; rounded down.
     pub thickness: [f32; GROUP],
     /// The number of boxes.
@@ -61,6 +63,7 @@ impl Node {
         Self {
             planes: [[[f32::INFINITY; GROUP]; 3], [[-f32::INFINITY; GROUP]; 3]],
             children: [0; GROUP],
+            slices: [0; GROUP],
             thickness: [f32::INFINITY; GROUP],
             count: 0,
         }
@@ -95,7 +98,7 @@ impl Node {
         }
     }
 
-    /// The members in the node's own boxes.
+    /// The members in the node's own boxes; those in several of them as often.
     pub fn members(&self) -> impl Iterator<Item = u32> {
         let entries = self.children[..self.count].iter().copied();
         entries.filter(|entry| entry & IS_NODE == 0)
@@ -178,24 +181,50 @@ impl Member<f64> {
             thickness: triangle.thickness(),
         }
     }
+
+    /// A slice of a triangle as a member of a tree.
+    pub fn of_slice(triangle: &PackedTriangle<f64>, slice: u8) -> Self {
+        Self {
+            bounds: triangle.slicing.tree_bounds(&triangle.corners, slice),
+            thickness: triangle.thickness(),
+        }
+    }
 }
 
 impl<R: Real> Bvh<R> {
     /// Builds a tree over `count` members. They are queried by number instead of stored, since a million of them
     /// would take much memory twice.
     pub fn new(count: usize, member: impl Fn(usize) -> Member<R>) -> Self {
+        Self::of_slices((count, |number| (number as u32, 0)), |number, _| {
+            member(number)
+        })
+    }
+
+    /// Builds a tree over `count` slices of members. `slice` returns the number of the member and that of its slice,
+    /// `member` that slice as an entry of the tree.
+    pub fn of_slices(
+        (count, slice): (usize, impl Fn(usize) -> (u32, u8)),
+        member: impl Fn(usize, u8) -> Member<R>,
+    ) -> Self {
         // Single precision is enough to decide the grouping.
         let point = |v: Vec3<R>| Vec3A::from(v.to_dvec3().as_vec3());
-        let bounds = (0..count).map(|number| member(number).bounds);
+        let bounds = (0..count).map(|entry| {
+            let (number, slice) = slice(entry);
+            member(number as usize, slice).bounds
+        });
         let boxes = bounds.map(|bounds| Aabb::new(point(bounds.low), point(bounds.high)));
-        let bits = |child| match child {
-            Child::Member(member) => member,
-            Child::Node(node) => node | IS_NODE,
-        };
-        let node = |WideNode { children, count }| Node {
-            children: children.map(bits),
-            count,
-            ..Node::empty()
+        let node = |WideNode { children, count }| {
+            let mut node = Node {
+                count,
+                ..Node::empty()
+            };
+            for (index, child) in children[..count].iter().enumerate() {
+                (node.children[index], node.slices[index]) = match *child {
+                    Child::Node(node) => (node | IS_NODE, 0),
+                    Child::Member(entry) => slice(entry as usize),
+                };
+            }
+            node
         };
         let boxes: Vec<_> = boxes.collect();
         let groups = group_boxes(&boxes);
@@ -216,7 +245,7 @@ impl<R: Real> Bvh<R> {
     /// better.
     pub fn refitted(&self, member: impl Fn(usize) -> Member<R>) -> Option<Self> {
         let mut bvh = self.clone();
-        bvh.refit(member);
+        bvh.refit(|number, _| member(number));
         (bvh.surface() <= self.built_surface * MAX_SURFACE_GROWTH).then_some(bvh)
     }
 
@@ -232,13 +261,20 @@ impl<R: Real> Bvh<R> {
         boxes.map(half_surface).sum()
     }
 
-    /// Renumbers the members so that those of a node are consecutive. Returns the old numbers in the new order.
-    pub fn renumber(&mut self) -> Vec<u32> {
-        let mut old = Vec::new();
+    /// Renumbers the `count` members in the order in which nodes hold them first, so that those of a node are mostly
+    /// consecutive. Returns the old numbers in the new order.
+    pub fn renumber(&mut self, count: usize) -> Vec<u32> {
+        let (mut old, mut new) = (Vec::with_capacity(count), vec![u32::MAX; count]);
         for node in Arc::make_mut(&mut self.nodes) {
             for entry in &mut node.children[..node.count] {
                 if *entry & IS_NODE == 0 {
-                    old.push(std::mem::replace(entry, old.len() as u32));
+                    let number = &mut new[*entry as usize];
+                    // The other slices of a member have the number of the first one.
+                    if *number == u32::MAX {
+                        *number = old.len() as u32;
+                        old.push(*entry);
+                    }
+                    *entry = *number;
                 }
             }
         }
@@ -246,13 +282,13 @@ impl<R: Real> Bvh<R> {
     }
 
     /// Fits the boxes to members that have moved.
-    pub fn refit(&mut self, member: impl Fn(usize) -> Member<R>) {
+    pub fn refit(&mut self, member: impl Fn(usize, u8) -> Member<R>) {
         let nodes = Arc::make_mut(&mut self.nodes);
         // A node comes before its child nodes.
         for index in (0..nodes.len()).rev() {
             for slot in 0..nodes[index].count {
                 let fitted = match nodes[index].child(slot) {
-                    Child::Member(number) => member(number as usize),
+                    Child::Member(number) => member(number as usize, nodes[index].slices[slot]),
                     Child::Node(node) => nodes[node as usize].around(),
                 };
                 nodes[index].set(slot, &fitted);
@@ -277,7 +313,8 @@ impl<R: Real> Bvh<R> {
         }
     }
 
-    /// The members for whose boxes, and all boxes around these, a condition holds; in any order.
+    /// The members for whose boxes, and all boxes around these, a condition holds; in any order, and once for each
+    /// box.
     pub fn members_where(&self, mut holds: impl FnMut(&BoundingBox<R>) -> bool) -> Vec<u32> {
         let (mut members, mut waiting) = (Vec::new(), vec![0_u32]);
         while let Some(node) = waiting.pop().and_then(|node| self.nodes.get(node as usize)) {
@@ -311,127 +348,4 @@ fn below<R: Real>(number: R) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::grouping::MAX_DEPTH;
-    use super::*;
-    use glam::DVec3;
-    use proptest::prelude::*;
-
-    fn vector() -> impl Strategy<Value = DVec3> {
-        prop::array::uniform3(-50.0..50.0_f64).prop_map(DVec3::from)
-    }
-
-    fn member((center, reach): (DVec3, f64)) -> Member<f64> {
-        Member {
-            bounds: BoundingBox {
-                low: Vec3::from_dvec3(center - reach),
-                high: Vec3::from_dvec3(center + reach),
-            },
-            thickness: reach,
-        }
-    }
-
-    fn tree(members: &[Member<f64>]) -> Bvh<f64> {
-        Bvh::new(members.len(), |n| members[n])
-    }
-
-    fn holds(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
-        outer.union(inner) == *outer
-    }
-
-    #[test]
-    fn numbers_are_rounded_down_by_less_than_a_digit() {
-        for number in [0.1, 1e12 / 3.0, 1e300, 1e-45, 1e-300, 0.0, 16_777_217.0] {
-            for number in [number, -number] {
-                let found = below(number);
-                assert!(f64::from(found) <= number, "{found} {number}");
-                assert!(f64::from(found.next_up()) > number, "{found} {number}");
-            }
-        }
-    }
-
-    /// Returns whether a box is no larger than rounding to single precision requires.
-    fn is_near(outer: &BoundingBox<f64>, inner: &BoundingBox<f64>) -> bool {
-        let off = (outer.low - inner.low)
-            .max_abs()
-            .max((outer.high - inner.high).max_abs());
-        off <= 100.0 * f64::from(f32::EPSILON)
-    }
-
-    /// Returns whether every member is held once, and contained in all boxes above it.
-    fn is_whole(bvh: &Bvh<f64>, members: &[Member<f64>]) -> bool {
-        let mut found = vec![0; members.len()];
-        let mut waiting: Vec<(u32, BoundingBox<f64>, usize)> = vec![(0, bvh.bounds, 1)];
-        while let Some((index, around, depth)) = waiting.pop() {
-            let node = &bvh.nodes[index as usize];
-            for slot in 0..node.count {
-                let fitted = node.get(slot);
-                if depth > MAX_DEPTH || !holds(&around, &fitted.bounds) {
-                    return false;
-                }
-                match node.child(slot) {
-                    Child::Node(node) => waiting.push((node, fitted.bounds, depth + 1)),
-                    Child::Member(member) => {
-                        found[member as usize] += 1;
-                        let own = &members[member as usize].bounds;
-                        if !holds(&fitted.bounds, own) || !is_near(&fitted.bounds, own) {
-                            return false;
-                        }
-                    }
-                }
-            }
-        }
-        found.iter().all(|&times| times == 1)
-    }
-
-    proptest! {
-        #[test]
-        fn every_member_is_held_by_all_boxes_above_it(places in prop::collection::vec((vector(), 0.0..5.0_f64), 1..700)) {
-            let mut members: Vec<_> = places.into_iter().map(member).collect();
-            let mut bvh = tree(&members);
-            prop_assert!(is_whole(&bvh, &members));
-            let thinnest = members.iter().map(|member| member.thickness).fold(f64::INFINITY, f64::min);
-            prop_assert_eq!(bvh.thinnest, f64::from(below(thinnest)));
-            for moved in &mut members {
-                moved.bounds.high = moved.bounds.high + Vec3::new(1.0, 2.0, 0.0);
-            }
-            bvh.refit(|n| members[n]);
-            prop_assert!(is_whole(&bvh, &members));
-        }
-    }
-
-    #[test]
-    fn a_tree_is_kept_while_little_moves() {
-        let place = |at: usize| DVec3::new((at % 32) as f64, (at / 32) as f64, 0.0) * 10.0;
-        let mut members: Vec<_> = (0..1000).map(|at| member((place(at), 1.0))).collect();
-        let bvh = tree(&members);
-        members[17] = member((place(40), 1.0));
-        let moved = bvh.refitted(|n| members[n]).expect("hardly larger");
-        assert!(is_whole(&moved, &members));
-        let scattered: Vec<_> = (0..1000)
-            .map(|at| member((place(at * 367 % 1000), 1.0)))
-            .collect();
-        assert!(moved.refitted(|n| scattered[n]).is_none());
-    }
-
-    #[test]
-    fn a_thousand_members_in_one_place_are_found() {
-        let members = vec![member((DVec3::ONE, 1.0)); 1000];
-        assert!(is_whole(&tree(&members), &members));
-        // Each box contains the previous one: a chain of pairs.
-        let nested: Vec<_> = (0..2000)
-            .map(|at| member((DVec3::ZERO, f64::from(at))))
-            .collect();
-        assert!(is_whole(&tree(&nested), &nested));
-    }
-
-    #[test]
-    fn nodes_are_well_filled() {
-        let grid = (0..4096).map(|at| {
-            let (x, y) = (f64::from(at % 64), f64::from(at / 64));
-            member((DVec3::new(x, y, 0.0), 0.5))
-        });
-        let bvh = tree(&grid.collect::<Vec<_>>());
-        assert!(bvh.nodes.len() < 4096 / 8, "{} nodes", bvh.nodes.len());
-    }
-}
+mod tests;

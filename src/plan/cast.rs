@@ -1,10 +1,12 @@
 //! Single rays through the tree of a mesh: the distance to the opposite side, and whether a point is outside.
 
+use std::collections::HashSet;
+
 use super::bvh::{Bvh, Child, GROUP};
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real, Vec3};
 
-/// Calls `on_hit` with each triangle that a ray hits and its distance, in any order; it returns the distance up to
+/// Calls `on_hit` once with each triangle that a ray hits and its distance, in any order; it returns the distance up to
 /// which the search goes on. Returns whether visiting `max_nodes` nodes was enough to find all hits.
 pub fn cast<R: Real>(
     triangles: &[PackedTriangle<R>],
@@ -14,7 +16,7 @@ pub fn cast<R: Real>(
 ) -> bool {
     let inverse = direction.to_array().map(|part| R::ONE / part);
     let mut reach = R::INFINITY;
-    let mut waiting = vec![0];
+    let (mut waiting, mut hits) = (vec![0], HashSet::new());
     let mut remaining = max_nodes;
     while let Some(node) = waiting
         .pop()
@@ -34,7 +36,8 @@ pub fn cast<R: Real>(
                 Child::Node(inner) => waiting.push(inner),
                 Child::Member(face) => {
                     let t = intersect(&triangles[face as usize].corners, origin, direction);
-                    if t < R::INFINITY {
+                    // Several slices of it may be in boxes that are hit.
+                    if t < R::INFINITY && hits.insert(face) {
                         reach = on_hit(face, t);
                     }
                 }

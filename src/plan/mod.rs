@@ -6,6 +6,8 @@ mod balls;
 
 mod grouping;
 
+mod slices;
+
 mod bvh;
 
 mod cast;

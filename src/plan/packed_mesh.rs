@@ -14,11 +14,12 @@ use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
 use super::components::{first_of_components, volume};
 use super::oriented_box::OrientedBox;
+use super::slices::{entries, slicings};
 use super::smooth::{corner_normals, largest_lift};
 use super::thickness::thicknesses;
 use super::tips::tips;
 use crate::mesh::Triangles;
-use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle};
+use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Slicing};
 use crate::scene::{Mesh, around};
 use crate::simd::{Real, Vec3};
 
@@ -143,17 +144,21 @@ impl PackedMesh<f64> {
         let faces = mesh.source.triangles().faces().iter().map(face);
         let faces: Vec<_> = faces.filter(|face| packed(face).is_some()).collect();
         // The tree first, since building it takes more memory than anything else.
-        let mut bvh = Bvh::new(faces.len(), |number| Member {
-            bounds: BoundingBox::around(&corners(faces[number]).map(Vec3::from_dvec3)),
-            thickness: f64::INFINITY,
-        });
+        let face_corners = |face: usize| corners(faces[face]).map(Vec3::from_dvec3);
+        let slicings = slicings(faces.len(), face_corners);
+        let mut bvh = tree(&slicings, faces.len(), face_corners);
         // Triangles that are hit together are stored together.
-        let order = bvh.renumber().into_iter();
-        let faces: Vec<_> = order.map(|number| faces[number as usize]).collect();
+        let order = bvh.renumber(faces.len());
+        let slicing = |&number: &u32| slicings.get(number as usize);
+        let slicings: Vec<_> = order.iter().filter_map(slicing).copied().collect();
+        let faces: Vec<_> = order.iter().map(|&number| faces[number as usize]).collect();
         let corners_of = |face: u32| corners(faces[face as usize]).map(Vec3::from_dvec3);
         let borders = Borders::of(&faces, corners_of, |_| 0);
         let mut triangles = Vec::with_capacity(faces.len());
         triangles.extend(faces.iter().filter_map(packed));
+        for (triangle, slicing) in triangles.iter_mut().zip(slicings) {
+            triangle.slicing = slicing;
+        }
         drop(points);
         measure(&mut triangles, &faces, &mut bvh, &borders);
         let component_firsts = first_of_components(&borders.connected).into();
@@ -219,6 +224,7 @@ impl<R: Real> PackedMesh<R> {
             }
             triangle.thickness = before.thickness.to_f64();
             triangle.tip = before.tip;
+            triangle.slicing = before.slicing;
             Some(triangle)
         });
         let triangles: Vec<PackedTriangle<f64>> = triangles.collect::<Option<_>>()?;
@@ -226,7 +232,7 @@ impl<R: Real> PackedMesh<R> {
             return None;
         }
         let mut bvh = self.bvh.in_precision();
-        bvh.refit(|number| Member::of(&triangles[number]));
+        bvh.refit(|number, slice| Member::of_slice(&triangles[number], slice));
         let smooth = normals_of(mesh, &triangles);
         Some(PackedMesh {
             middle,
@@ -281,6 +287,31 @@ impl<R: Real> PackedMesh<R> {
     }
 }
 
+/// The tree over the faces of a mesh, or over their slices if there are any.
+fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64>; 3]) -> Bvh<f64> {
+    let member = |bounds| Member {
+        bounds,
+        thickness: f64::INFINITY,
+    };
+    if slicings.is_empty() {
+        return Bvh::new(faces, |face| member(BoundingBox::around(&corners(face))));
+    }
+    let entries = entries(slicings);
+    let slice = |entry: usize| entries[entry];
+    let mut bvh = Bvh::of_slices((entries.len(), slice), |face, slice| {
+        let bounds = slicings[face].bounds(&corners(face), slice);
+        if slicings[face].count() == 1 {
+            return member(bounds);
+        }
+        // Round: in their own boxes, the slices of an upright face would be grouped like a whole one, whose box is
+        // mostly empty once the mesh is rotated.
+        let (middle, radius) = bounds.ball();
+        member(BoundingBox::around(&[middle]).widened(radius))
+    });
+    bvh.refit(|face, slice| member(slicings[face].tree_bounds(&corners(face), slice)));
+    bvh
+}
+
 /// Sets the thickness and the tip of each triangle, given their corner numbers, tree and borders, and updates the
 /// thicknesses in the tree.
 pub fn measure(
@@ -296,7 +327,7 @@ pub fn measure(
         triangle.thickness = triangle.thickness.max(thickness);
         triangle.tip = tip;
     }
-    bvh.refit(|number| Member::of(&triangles[number]));
+    bvh.refit(|number, slice| Member::of_slice(&triangles[number], slice));
 }
 
 /// The normals of faces that are shaded as one curved surface; empty if the mesh is flat.

@@ -53,14 +53,16 @@ struct Faces<'a> {
 }
 
 impl Faces<'_> {
-    /// The thickness through the inside. All faces of a node get the least value measured for some of them.
+    /// The thickness through the inside. All faces of a node get the least value measured for some of them; faces in
+    /// several nodes get the least of these.
     fn depths(&self) -> Vec<f64> {
         let nodes = self.bvh.nodes.par_iter();
         let found: Vec<f64> = nodes.map(|node| self.least_depth(node)).collect();
         let mut depths = vec![f64::INFINITY; self.triangles.len()];
         for (node, least) in self.bvh.nodes.iter().zip(found) {
             for face in node.members() {
-                depths[face as usize] = least;
+                let depth = &mut depths[face as usize];
+                *depth = depth.min(least);
             }
         }
         depths

@@ -35,4 +35,4 @@ pub use plane::PackedPlane;
 pub use projector::{Extent, Projector, Rectangle};
 pub use ray::{Ray, inverse};
 pub use sphere::{PackedSphere, Round};
-pub use triangle::{CornerNormals, Culling, Curved, Flat, PackedTriangle, Tip, Vertex};
+pub use triangle::{CornerNormals, Culling, Curved, Flat, PackedTriangle, Slicing, Tip, Vertex};

@@ -11,6 +11,35 @@ use crate::simd::{Mask as _, Real, SimdFloat};
 /// covers surfaces that the ray meets at up to 89 degrees from their normals.
 const GRAZING_FACTOR: f64 = 64.0;
 
+/// Share of the error along rays within which two hits may swap places for samples that search for an edge inside a
+/// pixel: they need not see again what is only in doubt where a surface is met at a grazing angle.
+const TIE_SHARE: f64 = 1.0 / 16.0;
+
+/// What may be in doubt about the hits of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DoubtScope {
+    /// Nothing.
+    Nothing,
+    /// Whether something is hit, and which of two hits is nearer.
+    All,
+    /// Whether something is hit.
+    Hits,
+    /// Which of two hits is nearer.
+    Ties,
+}
+
+impl DoubtScope {
+    /// Everything, or nothing unless `is_doubted`. Without `doubts_nearer`, it is never in doubt which of two hits is
+    /// nearer.
+    pub fn of(is_doubted: bool, doubts_nearer: bool) -> Self {
+        match (is_doubted, doubts_nearer) {
+            (false, _) => Self::Nothing,
+            (true, false) => Self::Hits,
+            (true, true) => Self::All,
+        }
+    }
+}
+
 /// Whether kernels detect doubtful hits. Those without `TREE` do not, and lose no time by it: scenes of few things
 /// have few edges. If such a scene is filtered nevertheless, kernels with `TREE` trace it.
 pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
@@ -20,7 +49,7 @@ pub const fn is_filtered<L: SimdFloat, const TREE: bool>() -> bool {
 /// What is undecided about the hits of rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Doubt<L: SimdFloat, const TREE: bool> {
-    is_enabled: bool,
+    scope: DoubtScope,
     /// Lateral error of the rays.
     pub blur: Blur<L>,
     /// Error of a hit along the rays.
@@ -32,14 +61,22 @@ pub struct Doubt<L: SimdFloat, const TREE: bool> {
 }
 
 impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
-    /// Starts with nothing in doubt, which stays so unless `is_enabled`. Without `doubts_nearer`, it is never in doubt
-    /// which of two hits is nearer.
+    /// Starts with nothing in doubt about rays with this lateral error.
     #[inline(always)]
-    pub fn new(blur: Blur<L>, (is_enabled, doubts_nearer): (bool, bool)) -> Self {
+    pub fn new(blur: Blur<L>, scope: DoubtScope) -> Self {
+        let along = match scope {
+            DoubtScope::All => GRAZING_FACTOR,
+            DoubtScope::Nothing | DoubtScope::Hits => 0.0,
+            DoubtScope::Ties => GRAZING_FACTOR * TIE_SHARE,
+        };
+        let lateral = match scope {
+            DoubtScope::Ties => Blur::splat(blur.start.token(), Blur::NONE),
+            _ => blur,
+        };
         Self {
-            is_enabled,
-            blur,
-            along: blur.times(if doubts_nearer { GRAZING_FACTOR } else { 0.0 }),
+            scope,
+            blur: lateral,
+            along: blur.times(along),
             undecided_from: blur.start.like(L::Real::INFINITY),
             second_nearest: blur.start.like(L::Real::INFINITY),
         }
@@ -48,7 +85,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
     /// Returns whether doubtful hits are detected.
     #[inline(always)]
     pub fn is_enabled(&self) -> bool {
-        is_filtered::<L, TREE>() && self.is_enabled
+        is_filtered::<L, TREE>() && self.scope != DoubtScope::Nothing
     }
 
     /// Returns a distance, increased by as much as rounding may have reduced it.
@@ -78,10 +115,21 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
         t - self.along.at(t)
     }
 
+    /// Returns where it is in doubt what is hit, given the distance of the nearest hit.
+    #[inline(always)]
+    pub fn about_nearest(&self, nearest: L) -> L::Mask {
+        let is_tie = self.is_tie(nearest, self.second_nearest);
+        if self.scope == DoubtScope::Ties {
+            is_tie
+        } else {
+            self.may_hit_before(nearest) | is_tie
+        }
+    }
+
     /// Returns where the nearest and the second hit may swap places: also where they are at equal distances, as
     /// surfaces a hair apart are if seen from afar.
     #[inline(always)]
-    pub fn is_tie(&self, nearest: L, second_nearest: L) -> L::Mask {
+    fn is_tie(&self, nearest: L, second_nearest: L) -> L::Mask {
         // If both are infinite, the difference is NaN, which is not less.
         (second_nearest - nearest).less(self.along.at(nearest))
     }
@@ -117,7 +165,7 @@ impl<L: SimdFloat, const TREE: bool> Doubt<L, TREE> {
 
     /// Returns where the rays may hit something else up to a distance.
     #[inline(always)]
-    pub fn may_hit_before(&self, t: L) -> L::Mask {
+    fn may_hit_before(&self, t: L) -> L::Mask {
         let infinity = t.like(L::Real::INFINITY);
         self.undecided_from.less(infinity) & self.undecided_from.at_most(self.upper_bound(t))
     }

@@ -7,7 +7,7 @@ use super::bounce::Bounce;
 use super::bundle::{Shaft, blur_margin};
 use super::candidates::{Candidates, Targets};
 use super::cull::Scratch;
-use super::doubt::{Uncertainty, is_filtered, max_hit_error, widest_blur};
+use super::doubt::{DoubtScope, Uncertainty, is_filtered, max_hit_error, widest_blur};
 use super::footprint::RayCone;
 use super::intersect::Kernel;
 use super::packet::{EdgeInfo, Packet, ReflectionParent};
@@ -52,17 +52,11 @@ impl<L: SimdFloat> Bounce<L> {
             let rays = Ray { origin, direction };
             self.packets.push(Packet::new(kernel, rays, active));
         }
-        // Samples that search for an edge inside a pixel are not doubted. Where rounding may decide what they see,
-        // both sides of the edge are equally near: the pixel changes by one step of the finest grid, or by what
-        // remains of a cell that is not divided. In 1 scene of 30, this is more than one level, and at most 7, in
-        // one pixel or a few; doubting them would make meshes take 1.2 times as long, and a mirror with a mesh 1.4
-        // times.
-        let is_doubted = edges != EdgeDetail::Signatures && kernel.plan.is_doubted();
-        if is_filtered::<L, TREE>() && is_doubted {
+        self.edge_detail = edges;
+        if self.doubt_scope::<TREE>(kernel.plan) != DoubtScope::Nothing {
             let uncertainty = Uncertainty::new(token, kernel.plan);
             self.uncertainties.resize(self.packets.len(), uncertainty);
         }
-        self.edge_detail = edges;
         if edges != EdgeDetail::Ignored {
             let (width, spread) = view.footprint();
             let cone = RayCone {
@@ -70,6 +64,27 @@ impl<L: SimdFloat> Bounce<L> {
                 spread: L::splat(token, spread),
             };
             self.edges.resize(self.packets.len(), EdgeInfo::new(cone));
+        }
+    }
+
+    /// What may be in doubt about the hits.
+    ///
+    /// Of samples that search for an edge inside a pixel, only which of two surfaces a hair apart a camera ray hits,
+    /// since they may swap places in whole pixels. Where rounding may decide what else they see, both sides of the
+    /// edge are equally near: the pixel changes by one step of the finest grid, or by what remains of a cell that is
+    /// not divided. In 1 scene of 30, this is more than one level, and at most 7, in one pixel or a few; doubting them
+    /// would make meshes take 1.2 times as long, and a mirror with a mesh 1.4 times.
+    #[inline(always)]
+    fn doubt_scope<const TREE: bool>(&self, plan: &Plan<L::Real>) -> DoubtScope {
+        let is_tied = !plan.ties.is_empty();
+        if !is_filtered::<L, TREE>() {
+            DoubtScope::Nothing
+        } else if self.edge_detail != EdgeDetail::Signatures {
+            DoubtScope::of(plan.is_doubted(), !is_tied)
+        } else if plan.is_doubted() && !is_tied && self.parents.is_empty() {
+            DoubtScope::Ties
+        } else {
+            DoubtScope::Nothing
         }
     }
 
@@ -122,6 +137,7 @@ impl<L: SimdFloat> Bounce<L> {
         let mut farthest = kernel.splat(0.0);
         let none = Blur::splat(kernel.token, Blur::NONE);
         let culled_faces = self.culled_faces(plan);
+        let scope = self.doubt_scope::<TREE>(plan);
         for index in 0..self.packets.len() {
             let ignored = self.ignored_by(kernel, index);
             let packet = &mut self.packets[index];
@@ -137,7 +153,7 @@ impl<L: SimdFloat> Bounce<L> {
             let mut uncertainty = self.uncertainties.get_mut(index);
             let blur = uncertainty.as_ref().map_or(none, |rays| rays.blur);
             let doubt;
-            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur), active, stack);
+            (packet.nearest, doubt) = kernel.nearest(targets, (&paths, blur, scope), active, stack);
             if let Some(uncertainty) = &mut uncertainty {
                 uncertainty.doubt = doubt;
             }
@@ -159,7 +175,7 @@ impl<L: SimdFloat> Bounce<L> {
         }
         // Hits may be off, most of all on large things.
         let farthest = farthest.greatest();
-        let hit_error = if self.uncertainties.is_empty() {
+        let hit_error = if self.uncertainties.is_empty() || scope == DoubtScope::Ties {
             L::Real::ZERO
         } else {
             let blur = widest_blur(kernel.token, &self.uncertainties);
@@ -278,6 +294,7 @@ impl<L: SimdFloat> Bounce<L> {
         (stack, rays): (&mut Stack<L::Real>, &mut Rays),
     ) {
         let looks_for_thin = self.looks_for_thin();
+        let doubts_colors = self.doubt_scope::<TREE>(kernel.plan) != DoubtScope::Ties;
         let has_gaps =
             self.edge_detail >= EdgeDetail::Borders && kernel.may_leave_gaps(&self.lights);
         for index in 0..self.packets.len() {
@@ -291,7 +308,9 @@ impl<L: SimdFloat> Bounce<L> {
                 lights: &self.lights,
                 gap_lights: has_gaps.then_some(&self.lights),
             };
-            let notes = (self.edges.get_mut(index), self.uncertainties.get_mut(index));
+            let uncertainty = self.uncertainties.get_mut(index);
+            let uncertainty = uncertainty.filter(|_| doubts_colors);
+            let notes = (self.edges.get_mut(index), uncertainty);
             let packet = &mut self.packets[index];
             let Some(mirrored) =
                 shader.shade(packet, (ignored, notes), &mut self.mixed, (stack, rays))
@@ -302,7 +321,7 @@ impl<L: SimdFloat> Bounce<L> {
             let paths = mirrored.paths;
             next.packets
                 .push(Packet::new(kernel, paths.rays, mirrored.active));
-            let uncertainty = self.uncertainties.get(index);
+            let uncertainty = self.uncertainties.get(index).filter(|_| doubts_colors);
             next.uncertainties
                 .extend(uncertainty.map(Uncertainty::of_mirrored));
             next.parents.push(ReflectionParent {

@@ -1,7 +1,7 @@
 //! The nearest hit among primitives, and whether anything blocks a ray.
 
 use super::candidates::Targets;
-use super::doubt::Doubt;
+use super::doubt::{Doubt, DoubtScope};
 use super::paths::{NO_PRIMITIVE, Paths, real};
 use super::scan::{Test, TreeScan, scan_lists};
 use super::thin_margin::ThinMargin;
@@ -95,12 +95,12 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     }
 
     /// Finds the nearest primitives along the paths where the mask is set. The returned mask tells where rounding
-    /// may decide which these are.
+    /// may decide which these are, as far as that is in the scope, if the paths have this lateral error.
     #[inline(always)]
     pub fn nearest(
         self,
         targets: Targets<L::Real>,
-        (paths, blur): (&Paths<L>, Blur<L>),
+        (paths, blur, scope): (&Paths<L>, Blur<L>, DoubtScope),
         active: L::Mask,
         stack: &mut Stack<L::Real>,
     ) -> (Nearest<L>, L::Mask) {
@@ -108,9 +108,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             t: self.infinity(),
             number: self.splat(NO_PRIMITIVE),
         };
-        let is_tied = !self.plan.ties.is_empty();
         let mut best = nothing;
-        let mut doubt = Doubt::new(blur, (self.plan.is_doubted(), !is_tied));
+        let mut doubt = Doubt::new(blur, scope);
         let mut test = NearestTest::<L, TREE, true> {
             methods: &self.plan.methods,
             best: &mut best,
@@ -118,18 +117,18 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
             doubt: &mut doubt,
         };
         scan_lists(self.plan, targets.candidates, paths, &mut test);
-        if let Some(tree_scan) = self.tree_scan(targets, (active, blur)) {
+        if let Some(tree_scan) = self.tree_scan(targets, (active, doubt.blur)) {
             // A value that is lent to an out-of-line function stays in memory; the originals can stay in registers.
             let (mut found, mut undecided) = (best, doubt);
             self.nearest_in_tree(&tree_scan, paths, (&mut found, &mut undecided), stack);
             (best, doubt) = (found, undecided);
         }
         let doubt = if doubt.is_enabled() {
-            (doubt.may_hit_before(best.t) | doubt.is_tie(best.t, doubt.second_nearest)) & active
+            doubt.about_nearest(best.t) & active
         } else {
             active & !active
         };
-        if is_tied {
+        if !self.plan.ties.is_empty() {
             best = self.resolve_ties(targets, (paths, blur), best, stack);
         }
         (best, doubt)
@@ -283,7 +282,13 @@ impl<L: SimdFloat, const TREE: bool, const LISTED: bool> Test<L>
                 return;
             };
             doubt.undecided_from = doubt.undecided_from.min(from);
-            doubt.second_nearest = doubt.second_nearest.min(t.max(self.best.t));
+            let mut other = t.max(self.best.t);
+            if !LISTED {
+                // Several slices of a face may be met, but it is no other one.
+                let is_again = self.best.number.same(other.like(real(number)));
+                other = L::select(is_again, other.like(L::Real::INFINITY), other);
+            }
+            doubt.second_nearest = doubt.second_nearest.min(other);
             t
         } else {
             paths.distance::<LISTED, P>(primitive, prepared, number, self.methods)

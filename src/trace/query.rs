@@ -9,6 +9,7 @@ use rayon::iter::{IntoParallelIterator as _, ParallelExtend as _, ParallelIterat
 
 use super::candidates::{Candidates, Targets};
 use super::control::RenderControl;
+use super::doubt::DoubtScope;
 use super::entry_points::EntryPoints;
 use super::intersect::Kernel;
 use super::paths::{IgnoredPrimitive, Paths};
@@ -81,7 +82,7 @@ impl SceneQuery {
             light: None,
             culled_faces: &[],
         };
-        let rays = (&paths, Blur::NONE);
+        let rays = (&paths, Blur::NONE, DoubtScope::Nothing);
         let (nearest, _) = kernel.nearest(targets, rays, true, &mut Vec::new());
         nearest.t
     }

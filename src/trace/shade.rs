@@ -1,11 +1,10 @@
 //! The colours that come back along rays: ambient, diffuse, specular, shadows and mirrors.
 //!
-//! Rays that travel in step may hit different things: each kind of thing that was hit is lit for its own
-//! rays, each material colours its own part, and the results are put together.
+//! Rays that travel in step may hit different things: each kind is lit, and each material coloured, for its own rays.
 
 use super::candidates::{Candidates, Targets};
 use super::cull::LightCandidates;
-use super::doubt::{Doubt, HitError, Uncertainty, is_filtered};
+use super::doubt::{Doubt, DoubtScope, HitError, Uncertainty, is_filtered};
 use super::footprint::Footprint;
 use super::hit_material::HitMaterial;
 use super::intersect::{Blocked, Kernel};
@@ -439,7 +438,8 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
             Some(error) => error.blur_to_light((reach, shrink)),
         };
         // The surface that a light is on does not block it.
-        let doubt = Doubt::new(blur, (point.error.is_some(), !light.may_be_on_surface));
+        let scope = DoubtScope::of(point.error.is_some(), !light.may_be_on_surface);
+        let doubt = Doubt::new(blur, scope);
         let wanted = (reach, facing, thin_width);
         let blocked = kernel.blocked(targets, (paths, doubt), wanted, stack);
         if point.error.is_some() {

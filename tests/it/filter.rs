@@ -310,6 +310,39 @@ fn clean_edges_need_no_filter_inside_of_pixels() {
     }
 }
 
+/// Closer than single precision can tell, but too far apart to count as one.
+#[test]
+fn sheets_a_hair_apart_keep_their_order_inside_of_pixels() {
+    for gap in [6e-6, 1e-5] {
+        let mut scene = Scene::demo();
+        let camera = Camera {
+            position: DVec3::new(0.0, 30.0, 100.0),
+            look_at: DVec3::new(0.0, -30.0, -100.0),
+            ..Camera::default()
+        };
+        scene.camera = camera;
+        let points = [(-20.0, 0.0), (20.0, 0.0), (0.0, 20.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+        let sheet = Triangles::new(points.to_vec(), vec![[0, 1, 2]]).expect("a sheet");
+        let sheets = [("sphere 1", 0.0), ("tetrahedron", gap)].map(|(pack, z)| {
+            let mesh = Mesh {
+                position: DVec3::Z * z,
+                ..Mesh::of(sheet.clone())
+            };
+            Object::new(pack, pack, mesh)
+        });
+        scene.objects = List::from_iter(sheets);
+        let clean = |precision| {
+            let request = RenderRequest {
+                sampling: Sampling::ADAPTIVE,
+                ..with(precision)
+            };
+            picture(&scene, &request).0
+        };
+        let off = differing(&clean(Precision::Auto), &clean(Precision::Double), 1);
+        assert_eq!(off, 0, "{gap} apart");
+    }
+}
+
 /// Walls seen exactly from above, with their sides on pixel borders and on the middles of pixels.
 fn plan() -> Scene {
     let mut scene = Scene::demo();

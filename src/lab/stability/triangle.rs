@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis, scattered};
 use super::subject::MapSubject;
-use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Tip};
+use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Slicing, Tip};
 use crate::scene::{Methods, TriangleMethod};
 use crate::simd::Vec3;
 
@@ -71,6 +71,7 @@ fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
         thickness: 1.0,
         tip: Tip::Nowhere,
         culling: Culling::Lit,
+        slicing: Slicing::WHOLE,
         longest: 1.0,
         material: 0,
     }

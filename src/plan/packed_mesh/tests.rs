@@ -92,3 +92,58 @@ fn faces_that_meet_at_a_larger_angle_stay_flat() {
     assert!(round.smooth.iter().all(|smooth| smooth.curvature > 0.5));
     assert!(packed(make(1.0), 0.0).smooth.is_empty());
 }
+
+#[test]
+fn the_boxes_of_narrow_faces_are_as_small_whichever_way_they_are_wound() {
+    let rim = |side: u32| {
+        let angle = f64::from(side) / 300.0 * std::f64::consts::TAU;
+        DVec3::new(angle.cos() * 5.0, 0.0, angle.sin() * 5.0)
+    };
+    let points: Vec<DVec3> = (0..300)
+        .map(rim)
+        .chain([DVec3::ZERO, DVec3::Y * 9.0])
+        .collect();
+    let side = |side: u32| [[side, 301, (side + 1) % 300], [(side + 1) % 300, 300, side]];
+    let faces: Vec<[u32; 3]> = (0..300).flat_map(side).collect();
+    let turned_over = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let boxes = [faces, turned_over].map(|faces| {
+        let mesh = PackedMesh::new(&Mesh {
+            rotation: DVec3::new(20.0, 0.0, 35.0),
+            ..Mesh::of(Triangles::new(points.clone(), faces).expect("a cone"))
+        });
+        let nodes = mesh.bvh.nodes.iter();
+        let boxes = nodes.flat_map(|node| (0..node.count).map(|index| node.bounds::<f64>(index)));
+        let sizes = boxes.map(|bounds| (bounds.high - bounds.low).length());
+        // A face counts once, however many of its slices a line meets.
+        let is_seen = |point| is_outside(&mesh.triangles, &mesh.bvh, mesh.to_local(point));
+        for at in [0.1, 1.0, 4.0] {
+            assert!(!is_seen(DVec3::new(0.3, at, -0.2)), "{at}");
+            assert!(is_seen(DVec3::new(at - 9.0, 7.0, at)), "{at}");
+        }
+        (mesh.is_inside_out, sizes.sum::<f64>())
+    });
+    let [(one_way, one), (other_way, other)] = boxes;
+    assert_ne!(one_way, other_way);
+    assert!((one / other - 1.0).abs() < 0.05, "{one} {other}");
+}
+
+#[test]
+fn few_boxes_in_a_cone_of_many_sides_hold_a_point_of_it() {
+    let rim = |side: usize| {
+        let angle = side as f64 / 1000.0 * std::f64::consts::TAU;
+        Vec3::new(angle.cos() * 5.0, -8.0, angle.sin() * 5.0)
+    };
+    let face = |side: usize| [Vec3::splat(0.0), rim(side), rim(side + 1)];
+    let holders = |slicings: &[Slicing]| {
+        let bvh = tree(slicings, 1000, face);
+        let held = (0..1000).step_by(10).map(|side| {
+            let [a, b, c] = face(side);
+            let middle = BoundingBox::around(&[(a + b + c) * (1.0 / 3.0)]);
+            bvh.members_where(|bounds| bounds.union(&middle) == *bounds)
+                .len()
+        });
+        held.sum::<usize>()
+    };
+    let (whole, sliced) = (holders(&[]), holders(&slicings(1000, face)));
+    assert!(sliced * 10 < whole, "{sliced} of {whole}");
+}

@@ -3,7 +3,6 @@
 use super::packed::PackedTriangle;
 use super::watertight::{Shear, edges_of};
 use crate::primitive::blur::Blur;
-use crate::primitive::bounding_box::BoundingBox;
 use crate::primitive::ray::Ray;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
@@ -48,10 +47,9 @@ pub fn watertight_in_doubt<L: SimdFloat>(
     if !passes_edge.any() {
         return Some((distance, start_doubt));
     }
-    // The edges of a narrow triangle are uncertain far beyond its corners: only rays through the box around it
-    // count.
-    let around = BoundingBox::around(&triangle.corners);
-    let entry = around.entry(ray, width);
+    // The edges of a narrow triangle are uncertain far beyond its corners: only rays through a box count that a tree
+    // has for it, so that what is in doubt does not depend on the boxes that other rays meet.
+    let entry = triangle.slicing.entry(&triangle.corners, ray, width);
     Some((
         distance,
         L::select(passes_edge, entry.min(start_doubt), start_doubt),

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::slicing::Slicing;
+use super::vertex::Vertex;
 use crate::scene::Triangle;
 use crate::simd::{Real, Vec3};
 
@@ -43,22 +45,6 @@ impl Tip {
 /// The share of a tip whose width equals the distance from it.
 pub const SHARES_PER_UNIT: f64 = 64.0;
 
-/// One of the corners of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Vertex {
-    /// The first one.
-    A,
-    /// The second one.
-    B,
-    /// The third one.
-    C,
-}
-
-impl Vertex {
-    /// All vertices, in order.
-    pub const ALL: [Self; 3] = [Self::A, Self::B, Self::C];
-}
-
 /// A flat triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedTriangle<R> {
@@ -75,6 +61,8 @@ pub struct PackedTriangle<R> {
     pub tip: Tip,
     /// How it may be left out.
     pub culling: Culling,
+    /// The slices of it that have boxes of their own in the tree of its mesh.
+    pub slicing: Slicing,
     /// The length of its longest edge.
     pub longest: R,
     /// Index of its material.
@@ -94,6 +82,7 @@ impl<R: Real> PackedTriangle<R> {
             thickness: R::from_f64(triangle.thickness()),
             tip: Tip::Nowhere,
             culling: Culling::Lit,
+            slicing: Slicing::WHOLE,
             longest: R::from_f64(triangle.longest_side()),
             material: 0,
         })
@@ -108,6 +97,7 @@ impl<R: Real> PackedTriangle<R> {
             thickness: S::from_f64(self.thickness.to_f64()),
             tip: self.tip,
             culling: self.culling,
+            slicing: self.slicing,
             longest: S::from_f64(self.longest.to_f64()),
             material: self.material,
         }
@@ -117,10 +107,9 @@ impl<R: Real> PackedTriangle<R> {
     pub fn flip(&mut self) {
         self.corners.swap(1, 2);
         self.normal = -self.normal;
-        self.tip = match self.tip {
-            Tip::Round(Vertex::B, share) => Tip::Round(Vertex::C, share),
-            Tip::Round(Vertex::C, share) => Tip::Round(Vertex::B, share),
-            tip => tip,
-        };
+        self.slicing = self.slicing.flipped();
+        if let Tip::Round(corner, _) = &mut self.tip {
+            *corner = corner.flipped();
+        }
     }
 }
