@@ -101,12 +101,12 @@ fn rods() -> Scene {
 fn cone() -> Scene {
     let mut scene = Scene::demo();
     let rim = |side: u32| {
-        let angle = f64::from(side) / 400.0 * std::f64::consts::TAU;
+        let angle = f64::from(side) / 80.0 * std::f64::consts::TAU;
         DVec3::new(angle.cos() * 30.0, 0.0, angle.sin() * 30.0)
     };
-    let points = (0..400).map(rim).chain([DVec3::ZERO, DVec3::Y * 70.0]);
-    let side = |side: u32| [[side, 401, (side + 1) % 400], [(side + 1) % 400, 400, side]];
-    let faces = (0..400).flat_map(side).collect();
+    let points = (0..80).map(rim).chain([DVec3::ZERO, DVec3::Y * 70.0]);
+    let side = |side: u32| [[side, 81, (side + 1) % 80], [(side + 1) % 80, 80, side]];
+    let faces = (0..80).flat_map(side).collect();
     let cone = Mesh {
         position: DVec3::new(130.0, 10.0, -60.0),
         rotation: DVec3::new(20.0, 0.0, 35.0),
