@@ -79,7 +79,7 @@ fn rods() -> Scene {
     let mut scene = Scene::demo();
     let ball = Mesh::of(icosphere(1.0));
     let mut dice = random::Dice(64);
-    for number in 0..40 {
+    for number in 0..16 {
         let [mut place, mut turn] = [DVec3::ZERO; 2];
         for axis in 0..3 {
             place[axis] = dice.real(-60.0, 60.0);
