@@ -19,11 +19,11 @@ use crate::ui::theme::palette;
 use crate::words::counted;
 
 /// Minimum window width in points to show all controls.
-const MIN_WIDTH_FOR_ALL: f32 = 1040.0;
+const MIN_WIDTH_FOR_ALL: f32 = 1100.0;
 /// Minimum window width in points to show all controls but the rates.
-const MIN_WIDTH_WITHOUT_RATES: f32 = 860.0;
+const MIN_WIDTH_WITHOUT_RATES: f32 = 910.0;
 /// Minimum window width in points to show buttons with text.
-const MIN_WIDTH_FOR_TEXT: f32 = 720.0;
+const MIN_WIDTH_FOR_TEXT: f32 = 770.0;
 /// Duration of a preset flight, in seconds.
 const PRESET_SECONDS: f64 = 8.0;
 /// Number of samples beyond which a recording counts as long: one of a minute or two.
