@@ -292,19 +292,24 @@ const CROWDED: usize = 2;
 /// Number of kinds, from the first, with no wrong pixel with clean edges; others may have one in a scene or two.
 const CLEAN: usize = 3;
 
+/// Number of pixels with clean edges that differ from double precision.
+fn wrong_with_clean_edges(scene: &Scene) -> usize {
+    let clean = |precision| {
+        let request = RenderRequest {
+            sampling: Sampling::ADAPTIVE,
+            ..with(precision)
+        };
+        picture(scene, &request).0
+    };
+    differing(&clean(Precision::Auto), &clean(Precision::Double), 1)
+}
+
 #[test]
 fn clean_edges_need_no_filter_inside_of_pixels() {
     for (kind, scenes) in DOUBTFUL[..CLEAN].iter().enumerate() {
         for seed in 0..SCENES / 3 {
             let scene = scenes(seed);
-            let clean = |precision| {
-                let request = RenderRequest {
-                    sampling: Sampling::ADAPTIVE,
-                    ..with(precision)
-                };
-                picture(&scene, &request).0
-            };
-            let off = differing(&clean(Precision::Auto), &clean(Precision::Double), 1);
+            let off = wrong_with_clean_edges(&scene);
             assert_eq!(off, 0, "scene {seed} of kind {kind}");
         }
     }
@@ -331,14 +336,7 @@ fn sheets_a_hair_apart_keep_their_order_inside_of_pixels() {
             Object::new(pack, pack, mesh)
         });
         scene.objects = List::from_iter(sheets);
-        let clean = |precision| {
-            let request = RenderRequest {
-                sampling: Sampling::ADAPTIVE,
-                ..with(precision)
-            };
-            picture(&scene, &request).0
-        };
-        let off = differing(&clean(Precision::Auto), &clean(Precision::Double), 1);
+        let off = wrong_with_clean_edges(&scene);
         assert_eq!(off, 0, "{gap} apart");
     }
 }
