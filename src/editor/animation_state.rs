@@ -128,28 +128,24 @@ impl AnimationState {
     pub fn recorded_span(&self, keys: &[Key<Camera>]) -> Option<(f64, f64)> {
         let take = self.scene.animation.take.as_ref();
         let simplified = take.into_iter().flat_map(|take| self.simplified_of(take));
-        let mut spans = simplified.filter_map(
-            |SimplifiedKeys {
-                 keys: simplified, ..
-             }| {
+        let mut spans = simplified
+            .map(|simplified| &simplified.keys)
+            .filter_map(|simplified| {
                 // A flight that pauses or returns has several equal keys, which tell nothing.
                 let times_if_unique = |key: &Key<Camera>| {
                     let mut equal = simplified.iter().filter(|other| other.value == key.value);
                     let only = equal.next().filter(|_| equal.next().is_none())?;
                     Some((only.time, key.time))
                 };
-                let first = keys.iter().take(KEYS_PROBED).find_map(times_if_unique)?;
-                let last = keys
-                    .iter()
-                    .rev()
-                    .take(KEYS_PROBED)
-                    .find_map(times_if_unique)?;
+                let mut from_start = keys.iter().take(KEYS_PROBED);
+                let mut from_end = keys.iter().rev().take(KEYS_PROBED);
+                let first = from_start.find_map(times_if_unique)?;
+                let last = from_end.find_map(times_if_unique)?;
                 let (start, end) = ends_of(simplified)?;
                 let scale = (last.1 - first.1) / (last.0 - first.0);
                 let at = |time: f64| first.1 + (time - first.0) * scale;
                 (scale.is_finite() && scale > 0.0).then(|| (at(start), at(end)))
-            },
-        );
+            });
         let ends = || ends_of(keys).filter(|(first, last)| first < last);
         spans.next().or_else(ends)
     }

@@ -1,7 +1,9 @@
 //! The window's frame: reads input, shows the panels, applies what they asked for, and hands the
 //! scene to the render thread.
 
-use egui::{Context, DragAndDrop, Event, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand};
+use egui::{
+    Context, DragAndDrop, Event, Memory, Popup, SurrenderFocusOn, Theme, Ui, ViewportCommand,
+};
 use serde::de::DeserializeOwned;
 
 use super::autosave::Autosave;
@@ -206,14 +208,19 @@ impl App {
             // Popups such as the color picker and the list of hints stay open meanwhile.
             commands.extend(pressed(ui, false, works_during_popups));
         } else if ui.text_edit_focused() && !self.files.is_asking() {
-            // The text is committed first; the command runs in the next frame.
-            self.deferred = pressed(ui, false, is_about_files);
-            if !self.deferred.is_empty() {
-                ui.memory_mut(egui::Memory::stop_text_input);
-                ui.request_repaint();
+            let about_files = pressed(ui, false, is_about_files);
+            if !about_files.is_empty() {
+                self.commit_text_before(ui, about_files);
             }
         }
         commands
+    }
+
+    /// Ends typing, so that the text is committed, and runs `commands` in the next frame.
+    pub(super) fn commit_text_before(&mut self, ctx: &Context, commands: Vec<Command>) {
+        self.deferred.extend(commands);
+        ctx.memory_mut(Memory::stop_text_input);
+        ctx.request_repaint();
     }
 
     pub(super) fn act_on(&mut self, ctx: &Context, outcome: Option<FileOutcome>) {

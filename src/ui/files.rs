@@ -12,11 +12,10 @@ use super::dialogs::{Ask, Dialogs};
 use super::file_requests::{DialogState, FileOutcome, OpenDialog, PathRequest, Prompt};
 use super::folders::Folders;
 use super::interchange::{export_job, export_path, export_povray, import_parts, import_path};
-use super::outside::{ExternalVersion, OUTSIDE, Watch, clear_lost, report_lost};
+use super::outside::{ExternalVersion, LoadedScene, OUTSIDE, Watch, clear_lost, report_lost};
 use super::prompts::{PathPrompt, Reply, ask_about_changes, ask_to_quit};
 use super::reading::{ReadOutcome, Reading};
 use crate::editor::{Action, Editor, OwnFile, Time};
-use crate::files::Stamp;
 use crate::scene::{Document, EXAMPLES, SceneError};
 
 /// Longest time for which reading a file may block the window, so that small files open at once.
@@ -139,7 +138,7 @@ impl Files {
             ctx.request_repaint_after(MAX_BLOCKING);
             self.take_finished_read(ctx, editor, Duration::ZERO);
         } else if is_free && self.watch.is_due(ctx, editor) {
-            self.check_external_change(editor);
+            self.check_external_change(ctx, editor);
             let changed = self.watch.changed_meshes(editor);
             self.reading.extend(Reading::reload_meshes(editor, changed));
         }
@@ -270,8 +269,8 @@ impl Files {
         None
     }
 
-    /// Reloads a file that another program has written; asks if the document was changed too.
-    fn check_external_change(&mut self, editor: &mut Editor) {
+    /// Starts to read the document's file again if another program has written it.
+    fn check_external_change(&mut self, ctx: &Context, editor: &mut Editor) {
         let Some(path) = editor.path().map(Path::to_owned) else {
             return;
         };
@@ -286,23 +285,28 @@ impl Files {
         if !editor.is_changed_outside() {
             return clear_lost(editor);
         }
-        // An unreadable file may be half written; the next check, or the next save, will tell.
-        let theirs = match Document::load_stamped(&path) {
-            Ok(theirs) => theirs,
-            Err(SceneError::Disk { .. }) => return self.watch.forget_modified(),
-            Err(error) => {
-                self.watch.broken = Some(error.to_string());
-                return;
+        self.reading
+            .push_back(Reading::external_version(editor, &path));
+        self.take_finished_read(ctx, editor, MAX_BLOCKING);
+    }
+
+    /// Reloads what another program has written; asks if the document was changed too. An unreadable file may be
+    /// half written: the next check, or the next save, will tell.
+    fn finish_external_change(&mut self, editor: &mut Editor, theirs: LoadedScene) {
+        match theirs {
+            Ok(_) => {
+                self.resolve_external_change(editor, theirs, None);
             }
-        };
-        self.resolve_external_change(editor, Ok(theirs), None);
+            Err(SceneError::Disk { .. }) => self.watch.forget_modified(),
+            Err(error) => self.watch.broken = Some(error.to_string()),
+        }
     }
 
     /// Takes what another program has written if that loses nothing, otherwise asks. Returns whether it was taken.
     fn resolve_external_change(
         &mut self,
         editor: &mut Editor,
-        theirs: Result<(Document, Stamp), SceneError>,
+        theirs: LoadedScene,
         request: Option<PathRequest>,
     ) -> bool {
         if theirs.is_ok() {
@@ -399,6 +403,9 @@ impl Files {
                 self.start(ctx, editor, Next::Open(reading.path));
             }
             ReadOutcome::Scene(document) => self.finish_opening(editor, &reading.path, *document),
+            ReadOutcome::External(theirs) if reading.is_external_version(editor) => {
+                self.finish_external_change(editor, *theirs);
+            }
             ReadOutcome::Mesh(Ok(file)) if !reading.is_for_other_document(editor) => {
                 import_parts(editor, &reading.path, file);
             }
@@ -409,17 +416,12 @@ impl Files {
             ReadOutcome::ReloadedMeshes(sources) if !reading.is_for_other_document(editor) => {
                 editor.take_meshes(sources);
             }
-            ReadOutcome::ReloadedMeshes(_) => {}
+            ReadOutcome::External(_) | ReadOutcome::ReloadedMeshes(_) => {}
             ReadOutcome::Nothing => editor.report_error(reading.describe_fault()),
         }
     }
 
-    fn finish_opening(
-        &mut self,
-        editor: &mut Editor,
-        path: &Path,
-        document: Result<(Document, Stamp), SceneError>,
-    ) {
+    fn finish_opening(&mut self, editor: &mut Editor, path: &Path, document: LoadedScene) {
         match document {
             Ok(document) => {
                 editor.begin(Ask::OpenScene.title());

@@ -24,6 +24,9 @@ const CHECKS_AFTER_CHANGE: u32 = 3;
 /// Most lines of differences that are shown.
 const MAX_LINES: usize = 8;
 
+/// A scene file with its meshes and the stamp of the file's content, or why it was refused.
+pub type LoadedScene = Result<(Document, Stamp), SceneError>;
+
 /// The state of the open file and of its mesh files at the last check.
 #[derive(Default)]
 pub struct Watch {
@@ -256,7 +259,7 @@ impl Guard {
 /// The version of the file that another program has written, and how it differs.
 pub struct ExternalVersion {
     /// What was read of the file.
-    document: Result<(Document, Stamp), SceneError>,
+    document: LoadedScene,
     /// Stamp of the file if it cannot be read as a scene, to recognise the next change.
     unreadable_stamp: Option<Stamp>,
     lines: Vec<String>,
@@ -264,7 +267,7 @@ pub struct ExternalVersion {
 
 impl ExternalVersion {
     /// Compares it with the document in the editor. If reading failed, it is read once more.
-    pub fn new(editor: &Editor, mut document: Result<(Document, Stamp), SceneError>) -> Self {
+    pub fn new(editor: &Editor, mut document: LoadedScene) -> Self {
         let mut unreadable_stamp = None;
         if let Some(path) = editor.path().filter(|_| document.is_err()) {
             // The stamp is taken first: whatever is written after that counts as a new change.

@@ -4,18 +4,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::outside::LoadedScene;
 use crate::editor::Editor;
-use crate::files::Stamp;
 use crate::mesh::{MeshError, MeshFile, read_mesh_file};
-use crate::scene::{Document, MeshSource, Scene, SceneError};
+use crate::scene::{Document, MeshSource, Scene};
 use crate::worker::Background;
 
 /// The outcome of reading.
 pub enum ReadOutcome {
     /// A scene file with its meshes, which replaces the document.
-    Scene(Box<Result<(Document, Stamp), SceneError>>),
+    Scene(Box<LoadedScene>),
     /// A mesh file, whose parts become objects.
     Mesh(Result<MeshFile, MeshError>),
+    /// The document's own file, which another program has written.
+    External(Box<LoadedScene>),
     /// Mesh files of the scene, read again.
     ReloadedMeshes(Vec<MeshSource>),
     /// Nothing: the reading thread stopped.
@@ -43,6 +45,13 @@ impl Reading {
             is_scene: true,
             ..Self::start(editor, path, read)
         }
+    }
+
+    /// Starts to read the document's own file, which another program has written.
+    pub fn external_version(editor: &Editor, path: &Path) -> Self {
+        Self::start(editor, path, |path| {
+            ReadOutcome::External(Box::new(Document::load_stamped(&path)))
+        })
     }
 
     /// Starts to read a mesh file.
@@ -94,6 +103,11 @@ impl Reading {
     /// Whether another document is open by now.
     pub fn is_for_other_document(&self, editor: &Editor) -> bool {
         self.document != editor.documents()
+    }
+
+    /// Whether what was read is still the content of the document's file, and new to the document.
+    pub fn is_external_version(&self, editor: &Editor) -> bool {
+        editor.path() == Some(&self.path) && editor.is_changed_outside()
     }
 
     /// Returns the message about a mesh that arrived after its document was closed.

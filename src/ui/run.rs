@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use egui::gui_zoom::{zoom_in, zoom_out};
-use egui::{Context, Key, Memory, Popup, ViewportCommand};
+use egui::{Context, Key, Popup, ViewportCommand};
 use glam::DVec3;
 
 use super::app::App;
@@ -99,9 +99,7 @@ impl App {
     pub(super) fn leave_to(&mut self, ctx: &Context, next: Next) {
         let command = Command::Leave(next);
         if ctx.text_edit_focused() && !self.files.is_asking() {
-            ctx.memory_mut(Memory::stop_text_input);
-            self.deferred.push(command);
-            ctx.request_repaint();
+            self.commit_text_before(ctx, vec![command]);
         } else {
             self.run(ctx, command);
         }
