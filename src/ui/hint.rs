@@ -2,10 +2,23 @@
 
 use egui::{Rect, RectAlign, Response, Tooltip, Ui};
 
+use crate::words::capitalised;
+
 /// Explains a widget while the pointer rests on it.
 pub trait Hinted {
     /// Shows a tooltip below the widget.
     fn hint(self, text: impl Into<String>) -> Self;
+
+    /// Shows what a widget does, or the obstacle for which it is disabled.
+    fn hint_unless(self, obstacle: Option<&str>, text: impl Into<String>) -> Self
+    where
+        Self: Sized,
+    {
+        match obstacle {
+            Some(why) => self.hint(capitalised(why)),
+            None => self.hint(text),
+        }
+    }
 
     /// Shows a tooltip next to the panel that contains the widget, so that the panel's numbers stay visible.
     fn hint_beside(&self, ui: &Ui, text: &str);

@@ -15,11 +15,12 @@ use super::icons;
 use super::layout::{Below, Layout, WindowPart};
 use super::menu_entry::{ITEM_COMMANDS, entry, offer, on_click, ticked};
 use super::number::{Field, drag_unlabelled};
-use super::obstacles::is_enabled;
+use super::obstacles::obstacle;
 use super::requests::UiRequests;
 use crate::animate::{Preset, Retime};
 use crate::editor::{Editor, Mode, Selection};
 use crate::scene::{Aspect, Projection};
+use crate::words::capitalised;
 
 /// Shows the bar.
 pub fn show(
@@ -212,9 +213,12 @@ fn animate_menu(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     offered(ui, "Look through the shot", Command::LookThrough);
     ui.separator();
     ui.menu_button("Ready-made flight", |ui| preset_entries(ui, out));
-    let can_retime = is_enabled(&Command::Retime(Retime::Smooth), editor);
-    ui.add_enabled_ui(can_retime, |ui| {
-        ui.menu_button("Retime", |ui| retime_entries(ui, out));
+    let obstacle = obstacle(&Command::Retime(Retime::Smooth), editor);
+    ui.add_enabled_ui(obstacle.is_none(), |ui| {
+        let menu = ui.menu_button("Retime", |ui| retime_entries(ui, out));
+        if let Some(why) = obstacle {
+            menu.response.hint(capitalised(why));
+        }
     });
     ui.separator();
     entry(ui, "Import path…", Command::Ask(Ask::ImportPath), out);

@@ -121,11 +121,6 @@ fn joining_obstacle(editor: &Editor) -> Option<&'static str> {
     (!can || items.is_empty()).then_some("select triangles or several meshes")
 }
 
-/// Whether the command would do something now.
-pub fn is_enabled(command: &Command, editor: &Editor) -> bool {
-    obstacle(command, editor).is_none()
-}
-
 fn shape_of(scene: &Scene, item: Item) -> Option<&Shape> {
     let object = match item.kind {
         ItemKind::Object => scene.objects.get(item.index)?,

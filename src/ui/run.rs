@@ -11,7 +11,7 @@ use super::commands::{Command, Next, Zoom, description_of, has_selected_text};
 use super::dropped::Dropped;
 use super::interchange::import_path;
 use super::layout::Below;
-use super::obstacles::{is_enabled, obstacle};
+use super::obstacles::obstacle;
 use super::on_selected::{
     delete, duplicate_all, move_step, objects_to_join, toggle_visible, with_same_pack,
 };
@@ -126,7 +126,7 @@ impl App {
             }
             // The text is copied by the panel that shows it.
             Command::Copy | Command::Cut if has_selected_text(ctx) => {}
-            Command::Copy | Command::Cut if is_enabled(&command, &self.editor) => {
+            Command::Copy | Command::Cut if obstacle(&command, &self.editor).is_none() => {
                 if self.copy(ctx) && command == Command::Cut {
                     self.run(ctx, Command::Delete);
                 }

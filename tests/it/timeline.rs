@@ -154,6 +154,30 @@ fn a_flight_is_recorded_and_becomes_keys_in_one_step() {
 }
 
 #[test]
+fn keys_of_another_recording_are_not_called_edited() {
+    let mut editor = recovered(Document::load(FLIGHT.as_ref()).expect("valid"));
+    survey_flight(&mut editor);
+    assert!(!editor.timeline().is_edited);
+    // What another program writes: the same flight further to the right.
+    let mut scene = Scene::clone(editor.scene());
+    let animation = scene.animation_mut();
+    for key in &mut animation.keys {
+        key.value.position.x += 5.0;
+    }
+    let take = animation.take.as_mut().map(Arc::make_mut);
+    for sample in &mut take.expect("a recording").samples {
+        sample.1.x += 5.0;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("other.ron");
+    let text = Document::of(scene).to_text().expect("a text");
+    std::fs::write(&path, text).expect("written");
+    editor.take_theirs(Document::load_stamped(&path).expect("valid"));
+    survey_flight(&mut editor);
+    assert!(editor.timeline().worst.is_some() && !editor.timeline().is_edited);
+}
+
+#[test]
 fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     let mut editor = Editor::demo();
     let record = |editor: &mut Editor| {

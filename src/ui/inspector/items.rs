@@ -205,14 +205,14 @@ fn object(
     ui.horizontal(|ui| {
         ui.weak(format!("used by {users}"));
         // With several objects selected, the packs of the others may be shared.
-        let can_be_unique = users > 1 || !is_alone;
-        let unique = ui.add_enabled(can_be_unique, egui::Button::new("Make unique"));
+        let obstacle = (users == 1 && is_alone).then_some("no other object uses this color pack");
+        let unique = ui.add_enabled(obstacle.is_none(), egui::Button::new("Make unique"));
         let hint = if is_alone {
             "Give this object a color pack of its own"
         } else {
             "Give each of these objects a color pack of its own"
         };
-        if unique.hint(hint).clicked() {
+        if unique.hint_unless(obstacle, hint).clicked() {
             out.edit(Edit::MakePacksUnique(vec![index]));
         }
     });

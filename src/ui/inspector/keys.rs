@@ -251,15 +251,18 @@ fn buttons(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let only = places.first().filter(|_| places.len() == 1);
     let is_of_camera = only.is_some_and(|only| only.track.is_none());
     let overwrite = ui.add_enabled(is_of_camera, Button::new("Overwrite with view"));
+    let obstacle = (!is_of_camera).then_some("select one key of the camera");
     let hint = "Set this key to the current view";
-    if overwrite.hint(hint).clicked() {
+    if overwrite.hint_unless(obstacle, hint).clicked() {
         let view = editor.shown().camera.clone();
         let changed = animation.with_each(places, |key| key.value = view.clone());
         out.edit(Edit::animation(changed, "Overwrite key"));
     }
     let go = ui.add_enabled(only.is_some(), Button::new("Go there"));
     let timed_key = only.and_then(|only| animation.time_and_pace_of(*only));
-    if go.hint("Move the playhead to this key").clicked()
+    let obstacle = only.is_none().then_some("several keys are selected");
+    let hint = "Move the playhead to this key";
+    if go.hint_unless(obstacle, hint).clicked()
         && let Some((time, _)) = timed_key
     {
         out.time(Time::Seek(time));

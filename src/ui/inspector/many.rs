@@ -13,7 +13,7 @@ use crate::scene::{ColorPack, Light, Object, Scene};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
-use crate::ui::obstacles::is_enabled;
+use crate::ui::obstacles::obstacle;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::EditedPart;
 use crate::ui::theme::{GRID, ROW};
@@ -41,11 +41,11 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     ui.weak(format!(
         "These are the values of {name}. A change applies to all items that have the property; {moves}."
     ));
-    let can_join = is_enabled(&Command::Join, editor);
-    let join = ui.add_enabled(can_join, egui::Button::new("Join"));
+    let obstacle = obstacle(&Command::Join, editor);
+    let join = ui.add_enabled(obstacle.is_none(), egui::Button::new("Join"));
     let hint =
         "Join these triangles and meshes into one mesh with the name and color pack of the first";
-    if join.hint(hint).on_disabled_hover_text(hint).clicked() {
+    if join.hint_unless(obstacle, hint).clicked() {
         out.commands.push(Command::Join);
     }
     if selected.len() <= MAX_COMPARED {

@@ -68,8 +68,7 @@ impl Lab {
         };
         let (can_adopt, label, hint) = adoption(candidate, render == *current);
         let adopt = ui.add_enabled(can_adopt, Button::new(label));
-        let adopt = adopt.hint(hint).on_disabled_hover_text(hint);
-        if adopt.clicked() {
+        if adopt.hint(hint).clicked() {
             out.edit(Edit::Render(render, "settings from the lab"));
         }
         ui.add_space(GRID / 2.0);

@@ -14,6 +14,7 @@ use crate::ui::icons;
 use crate::ui::inspector::replaced_keys_message;
 use crate::ui::menu_entry::on_click;
 use crate::ui::number::{Field, drag_unlabelled};
+use crate::ui::obstacles::obstacle;
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 use crate::words::counted;
@@ -147,11 +148,13 @@ fn frame_field(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
 }
 
 fn through_shot(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
-    let has_keys = !editor.scene().animation.keys.is_empty();
+    let obstacle = obstacle(&Command::LookThrough, editor);
     let through = Button::selectable(editor.looks_through(), "Through shot");
-    let through = ui.add_enabled(has_keys, through);
-    let words = "Enter or leave the shot camera";
-    on_click(ui, through, (words, Command::LookThrough), out);
+    let through = ui.add_enabled(obstacle.is_none(), through);
+    let words = with_key(ui, "Enter or leave the shot camera", &Command::LookThrough);
+    if through.hint_unless(obstacle, words).clicked() {
+        out.commands.push(Command::LookThrough);
+    }
 }
 
 fn record_button(ui: &mut Ui, editor: &Editor, has_words: bool, out: &mut UiRequests) {
