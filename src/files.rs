@@ -50,7 +50,7 @@ pub fn stays_inside(folder: &Path, path: &Path) -> bool {
 }
 
 /// Most backups of one file.
-const MOST_BACKUPS: u32 = 1000;
+const MAX_BACKUPS: u32 = 1000;
 
 /// Copies a file to `NAME.bak`, or to `NAME.bak2` and so on if that has other contents; returns the path.
 ///
@@ -58,7 +58,7 @@ const MOST_BACKUPS: u32 = 1000;
 /// Any error of the system.
 pub fn back_up(path: &Path) -> io::Result<PathBuf> {
     let bytes = fs::read(path)?;
-    for number in 1..MOST_BACKUPS {
+    for number in 1..MAX_BACKUPS {
         let mut name = path.as_os_str().to_owned();
         name.push(".bak");
         if number > 1 {

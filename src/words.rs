@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
+use std::time::Duration;
 
 /// A number with the name of what it counts: `1 frame`, `3 frames`.
 pub fn counted<N: Copy + Display + PartialEq + From<u8>>(number: N, singular: &str) -> String {
@@ -14,6 +15,11 @@ pub fn capitalised(word: &str) -> String {
     let mut letters = word.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string());
     first.unwrap_or_default() + letters.as_str()
+}
+
+/// A time in milliseconds.
+pub fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
 }
 
 /// A number with one decimal, or with two significant digits if it is between 0 and 1.

@@ -37,7 +37,7 @@ const ROUNDS: usize = 10;
 const ENDLESS: f64 = 1e5;
 
 /// Most points: their indices are passed as `f32`, which is exact up to this number.
-const MOST_POINTS: usize = 1 << 24;
+const MAX_POINTS: usize = 1 << 24;
 
 fn main() {
     if !build_peer().is_ok_and(|built| built.status.success()) {
@@ -288,7 +288,7 @@ fn shapes_of(scene: &Scene) -> Option<Vec<f32>> {
             Shape::Disc(_) => return None,
         }
     }
-    if points.len() > MOST_POINTS {
+    if points.len() > MAX_POINTS {
         return None;
     }
     let mut numbers = vec![balls.len() as f32];

@@ -39,7 +39,7 @@ struct Light {
 // Share of a length below which it is nothing.
 constexpr float LITTLE = 2e-6f;
 // Most mirror images in each other.
-constexpr int MOST_MIRRORS = 64;
+constexpr int MAX_MIRRORS = 64;
 // Sides of the squares of pixels that the threads share.
 constexpr int TILE = 32;
 
@@ -79,7 +79,7 @@ struct Scene {
 };
 
 Scene::Scene(Input in) {
-    width = in.count(), height = in.count(), mirrors = std::min(in.count(), MOST_MIRRORS);
+    width = in.count(), height = in.count(), mirrors = std::min(in.count(), MAX_MIRRORS);
     threads = in.count(), repeats = in.count();
     origin = in.vec(), right = in.vec(), up = in.vec(), forward = in.vec(), background = in.vec();
     materials.resize(in.count());
@@ -242,7 +242,7 @@ void trace(const Scene &scene, int left, int top, uint8_t *pixels) {
     alignas(64) typename Packet<N>::RayHit rays;
     alignas(64) int valid[N], met[N], mirrors[N];
     Places<N> at;
-    Colors<N> seen[MOST_MIRRORS + 1], kept[MOST_MIRRORS + 1];
+    Colors<N> seen[MAX_MIRRORS + 1], kept[MAX_MIRRORS + 1];
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

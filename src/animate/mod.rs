@@ -28,7 +28,7 @@ mod table;
 pub use arc_length_spline::ArcLengthSpline;
 pub use curve::{Closing, Curve};
 pub use path::CameraPath;
-pub use pose::{CameraChange, motion_between, pose, shot};
+pub use pose::{CameraChange, motion_between, pose, shot, shot_of_frame};
 pub use presets::Preset;
 pub use resample::resampled;
 pub use retime::{Retime, longest_flight, paused_seconds, stretched};

@@ -36,6 +36,12 @@ pub fn shot(scene: &Arc<Scene>, path: &CameraPath, time: f64) -> Arc<Scene> {
     posed
 }
 
+/// Returns the scene as it is in a frame of its animation, counted from 1.
+pub fn shot_of_frame(scene: &Arc<Scene>, frame: u64) -> Arc<Scene> {
+    let path = CameraPath::new(&scene.animation.keys);
+    shot(scene, &path, scene.animation.time_of(frame))
+}
+
 /// Returns the value of a track at a time; `None` without keys.
 fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
     let (i, along) = segment_at(keys, time)?;

@@ -24,7 +24,7 @@ use crate::machine::processor;
 use crate::plan::RenderRequest;
 use crate::scene::{Sampling, Scene};
 use crate::trace::{RenderControl, Threads};
-use crate::words::{capitalised, counted};
+use crate::words::{capitalised, counted, milliseconds};
 
 /// Most primitives of a scene in which growth is measured.
 const MAX_PRIMITIVES: u32 = 1_000_000;
@@ -280,8 +280,8 @@ fn advice(study: &Study, within: Option<f64>, budget: Option<Duration>) -> Strin
     let costs = costs_of_choices(study);
     let budget = budget.unwrap_or(Duration::MAX);
     let best = match within {
-        Some(error) => cheapest_within(&costs, error, budget.as_secs_f64() * 1e3),
-        None => closest_within(&costs, budget.as_secs_f64() * 1e3),
+        Some(error) => cheapest_within(&costs, error, milliseconds(budget)),
+        None => closest_within(&costs, milliseconds(budget)),
     };
     best.map_or_else(
         || "no measured method is within that limit".to_owned(),

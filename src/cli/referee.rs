@@ -13,7 +13,7 @@ use crate::image::{Film, Image, render_into};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Sampling;
 use crate::trace::RenderControl;
-use crate::words::counted;
+use crate::words::{counted, milliseconds};
 
 /// Factor by which the output picture amplifies differences.
 const AMPLIFICATION: u16 = 64;
@@ -71,8 +71,8 @@ pub fn run(args: &RefereeArgs) -> Result<(), CliError> {
     ));
     say(&format!(
         "Glint {:.1} ms, POV-Ray {:.0} ms without reading the scene, {} each",
-        cost.time.as_secs_f64() * 1e3,
-        theirs.time.as_secs_f64() * 1e3,
+        milliseconds(cost.time),
+        milliseconds(theirs.time),
         counted(threads.count(), "thread")
     ));
     if share < 100.0 {

@@ -15,7 +15,7 @@ use super::goal::{parse_error, parse_time};
 use super::scene::{read_scene, read_whole_document};
 use super::settings::SettingArgs;
 use super::target::picture_format;
-use crate::animate::{CameraPath, shot};
+use crate::animate::shot_of_frame;
 use crate::export::{NoSuchFrame, save_picture};
 use crate::image::{Film, Format, RenderCost};
 use crate::lab::{Choice, Goal, choose, quantile};
@@ -23,6 +23,7 @@ use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Aspect, Method as _, Projection, Scene};
 use crate::simd::Level;
 use crate::trace::{Rays, RenderControl, Threads};
+use crate::words::milliseconds;
 use crate::worker::Background;
 
 #[derive(Debug, Args)]
@@ -177,9 +178,8 @@ fn at_frame(scene: Scene, frame: u64) -> Result<Scene, NoSuchFrame> {
     if frame > count {
         return Err(NoSuchFrame { frame, count });
     }
-    let time = scene.animation.time_of(frame);
-    let path = CameraPath::new(&scene.animation.keys);
-    Ok(Arc::unwrap_or_clone(shot(&Arc::new(scene), &path, time)))
+    let shown = shot_of_frame(&Arc::new(scene), frame);
+    Ok(Arc::unwrap_or_clone(shown))
 }
 
 impl RenderArgs {
@@ -265,10 +265,7 @@ fn stats(
 ) -> Stats {
     // The first run prepares the meshes for all of them.
     let timed = if costs.len() > 1 { &costs[1..] } else { costs };
-    let mut millis: Vec<f64> = timed
-        .iter()
-        .map(|cost| cost.time.as_secs_f64() * 1e3)
-        .collect();
+    let mut millis: Vec<f64> = timed.iter().map(|cost| milliseconds(cost.time)).collect();
     millis.sort_by(f64::total_cmp);
     let RenderCost { rays, lanes, .. } = costs[0].clone();
     Stats {

@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use crate::mesh::Part;
 use crate::scene::{
-    Animation, Bookmark, Camera, ColorPack, Keys, Light, List, Object, Owner, Render, Scene, Shape,
-    Target,
+    Animation, Bookmark, Camera, ColorPack, Easing, Interpolation, Keys, Light, List, Object,
+    Owner, Render, Scene, Shape, Target,
 };
 use crate::words::{counted, listed};
 
@@ -139,6 +139,18 @@ impl Edit {
     /// Deletes these keys of an animation.
     pub fn delete_keys(animation: &Animation, keys: &Keys) -> Self {
         Self::animation(animation.without_keys(keys), "Delete keys")
+    }
+
+    /// Sets the interpolation after these keys of an animation.
+    pub fn key_interpolation(animation: &Animation, keys: &Keys, to: Interpolation) -> Self {
+        let changed = animation.with_pace(keys, |(each, _)| *each = to);
+        Self::animation(changed, "Key: interpolation")
+    }
+
+    /// Sets the easing after these keys of an animation.
+    pub fn key_easing(animation: &Animation, keys: &Keys, to: Easing) -> Self {
+        let changed = animation.with_pace(keys, |(_, each)| *each = to);
+        Self::animation(changed, "Key: easing")
     }
 
     /// Replaces the object at this index; `field` names what changed.

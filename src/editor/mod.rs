@@ -48,7 +48,7 @@ pub use messages::replaced_flight;
 pub use names::{free_bookmark_name, free_group_name};
 pub use own_file::OwnFile;
 pub use selection::Selection;
-pub use timeline::{REFERENCE_HEIGHT, Repeat, Time, Timeline};
+pub use timeline::{Repeat, Time, Timeline};
 
 #[cfg(test)]
 mod tests;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::scene::{Bookmark, Names, Scene, Shape};
 
 /// Most steps that are tried in search of a place for a copy.
-const MOST_STEPS: u32 = 1_000;
+const MAX_STEPS: u32 = 1_000;
 
 /// Returns an unused object name: `wanted`, or that with a new number.
 pub fn free_object_name(scene: &Scene, wanted: &str) -> String {
@@ -99,7 +99,7 @@ pub fn offset_to_free_place(scene: &Scene, new: &[Spot], (step, min_steps): (DVe
             cells.any(|cell| occupied.contains(&(*kind, cell)))
         })
     };
-    let steps = (min_steps..min_steps + MOST_STEPS).map(|count| step * f64::from(count));
+    let steps = (min_steps..min_steps + MAX_STEPS).map(|count| step * f64::from(count));
     let mut free = steps.filter(|offset| !is_taken(*offset));
     free.next().unwrap_or(step)
 }

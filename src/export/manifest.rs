@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::files::{open_file, read_file};
+use crate::words::milliseconds;
 
 /// The file's name.
 pub const MANIFEST: &str = "glint-frames.txt";
@@ -121,7 +122,7 @@ pub fn append_entry(
     let _ = writeln!(
         line,
         "{file}\t{content}\t{fingerprint}\t{:.3}",
-        time.as_secs_f64() * 1e3
+        milliseconds(time)
     );
     manifest.write_all(line.as_bytes())
 }

@@ -119,7 +119,7 @@ pub fn drawn(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<DVec3> {
 }
 
 /// The first object that a ray with a unit direction hits, as an index into the scene's list, and its distance;
-/// `None` if a light's marker comes first. Of several objects in one surface, any may be returned.
+/// `None` if a light's marker comes first. If several objects share the surface, any of them may be returned.
 pub fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let hit = nearest_hit(scene, origin, direction)?;
     match hit.kind {
@@ -219,19 +219,16 @@ fn light_term(
 }
 
 fn nearest_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<'_>> {
-    let objects = scene.objects.iter().enumerate();
-    let objects = objects
-        .filter(|(_, object)| object.visible)
-        .filter_map(|(index, object)| {
-            let (t, normal) = meet(&object.shape, origin, direction)?;
-            let kind = HitKind::Object(index);
-            Some(RayHit { t, normal, kind })
-        });
+    let objects = scene.objects.visible().filter_map(|(index, object)| {
+        let (t, normal) = intersect_shape(&object.shape, origin, direction)?;
+        let kind = HitKind::Object(index);
+        Some(RayHit { t, normal, kind })
+    });
     let lights = scene.lights.iter();
     let lights = lights.filter(|light| light.visible && scene.light_visualization);
     let markers = lights.filter_map(|light| {
         let marker = light.marker.as_ref()?;
-        let (t, normal) = meet_ball(light.position, marker.radius, origin, direction)?;
+        let (t, normal) = intersect_sphere(light.position, marker.radius, origin, direction)?;
         let kind = HitKind::Marker(&light.name, &marker.color_pack);
         Some(RayHit { t, normal, kind })
     });
@@ -255,7 +252,7 @@ fn earlier_coincident_hit<'a>(
     let pairs = coincidences(&scene.objects, centre).into_iter();
     let mut earlier = pairs.filter(|pair| pair.later == later);
     earlier.find_map(|pair| {
-        let (t, normal) = meet(&scene.objects[pair.earlier].shape, origin, direction)?;
+        let (t, normal) = intersect_shape(&scene.objects[pair.earlier].shape, origin, direction)?;
         // The ray may hit a mesh somewhere else than in the shared surface.
         let gap = (t - hit.t).abs() * normal.dot(direction).abs();
         if gap > SAME_SURFACE_DISTANCE * (hit.t + (origin - centre).length()) {
@@ -270,7 +267,7 @@ fn earlier_coincident_hit<'a>(
 fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option<String> {
     let mut objects = scene.visible_objects();
     let found = objects.find(|object| {
-        let hit = meet(&object.shape, point, towards);
+        let hit = intersect_shape(&object.shape, point, towards);
         hit.is_some_and(|(t, _)| t < distance * (1.0 - MIN_HIT_DISTANCE))
     });
     found.map(|object| object.name.clone())
@@ -278,19 +275,19 @@ fn blocker(scene: &Scene, point: DVec3, towards: DVec3, distance: f64) -> Option
 
 /// The distance at which a ray with a unit direction hits a shape, and the unit normal there: that of a ball points
 /// outwards.
-pub fn meet(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+pub fn intersect_shape(shape: &Shape, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     match shape {
-        Shape::Sphere(ball) => meet_ball(ball.center, ball.radius, origin, direction),
-        Shape::Plane(plane) => meet_plane(plane.point, plane.normal, origin, direction),
+        Shape::Sphere(ball) => intersect_sphere(ball.center, ball.radius, origin, direction),
+        Shape::Plane(plane) => intersect_plane(plane.point, plane.normal, origin, direction),
         Shape::Disc(disc) => {
-            let hit = meet_plane(disc.center, disc.normal, origin, direction)?;
+            let hit = intersect_plane(disc.center, disc.normal, origin, direction)?;
             let radial_distance = (origin + direction * hit.0 - disc.center).length();
             (radial_distance <= disc.radius).then_some(hit)
         }
-        Shape::Triangle(triangle) => meet_triangle(triangle.corners(), origin, direction),
+        Shape::Triangle(triangle) => intersect_triangle(triangle.corners(), origin, direction),
         Shape::Mesh(mesh) => {
             let faces = mesh.world_corners();
-            let hits = faces.filter_map(|corners| meet_triangle(corners, origin, direction));
+            let hits = faces.filter_map(|corners| intersect_triangle(corners, origin, direction));
             hits.min_by(|one, other| one.0.total_cmp(&other.0))
         }
     }
@@ -301,7 +298,12 @@ fn least_hit_distance(origin: DVec3) -> f64 {
     MIN_HIT_DISTANCE * (1.0 + origin.abs().max_element())
 }
 
-fn meet_ball(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+fn intersect_sphere(
+    center: DVec3,
+    radius: f64,
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(f64, DVec3)> {
     let x = origin - center;
     let along = direction.dot(x);
     let squared_distance = (x - direction * along).length_squared();
@@ -316,7 +318,7 @@ fn meet_ball(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Opt
     Some((t, (origin + direction * t - center) / radius))
 }
 
-fn meet_plane(
+fn intersect_plane(
     point: DVec3,
     normal: DVec3,
     origin: DVec3,
@@ -327,8 +329,12 @@ fn meet_plane(
     (t.is_finite() && t > least_hit_distance(origin)).then_some((t, normal))
 }
 
-fn meet_triangle([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
-    let (t, normal) = meet_plane(a, (c - a).cross(b - a), origin, direction)?;
+fn intersect_triangle(
+    [a, b, c]: [DVec3; 3],
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(f64, DVec3)> {
+    let (t, normal) = intersect_plane(a, (c - a).cross(b - a), origin, direction)?;
     let p = origin + direction * t;
     let is_inside = [(a, b), (b, c), (c, a)]
         .iter()

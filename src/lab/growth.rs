@@ -13,6 +13,7 @@ use crate::mesh::globe;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Camera, ColorPack, Light, List, Mesh, Object, Plane, Sampling, Scene, Sphere};
 use crate::trace::{Pass, RenderControl, Threads, Tracer};
+use crate::words::milliseconds;
 
 /// Numbers of primitives that are measured, up to a million.
 const COUNTS: [u32; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
@@ -221,14 +222,14 @@ fn time_glint(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
     let mut planner = Planner::default();
     let since = Instant::now();
     let tracer = Tracer::planned(scene, &request, &mut planner);
-    let plan_ms = since.elapsed().as_secs_f64() * 1e3;
+    let plan_ms = milliseconds(since.elapsed());
     // Allocated once for all runs: otherwise obtaining memory would dominate small scenes.
     let mut light: Vec<LinearRgb> = vec![[0.0; 3]; tracer.width() * tracer.height()];
     let time = |_| {
         let since = Instant::now();
         // Nothing stops it.
         let _ = tracer.pass(&mut light, Pass::Whole, &RenderControl::default());
-        since.elapsed().as_secs_f64() * 1e3
+        milliseconds(since.elapsed())
     };
     let ms = (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min);
     (ms, Some(plan_ms))
@@ -237,7 +238,7 @@ fn time_glint(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
 fn povray(scene: &Scene) -> Result<f64, String> {
     let drawn = by_povray(scene, Threads::current(), &RenderControl::default());
     let drawn = drawn.map_err(|error| error.to_string())?;
-    Ok(drawn.time.as_secs_f64() * 1e3)
+    Ok(milliseconds(drawn.time))
 }
 
 /// A floor, two lights and a camera.

@@ -146,11 +146,7 @@ mod tests {
             .map(|n| [0.0, 1.0, 2.0].map(|c| ((n as f32) * 0.618_034 + c * 0.37).fract()))
             .collect();
         let image = eight_bits(light.clone(), (1000, 100));
-        let back: Vec<LinearRgb> = image
-            .pixels
-            .iter()
-            .map(|&[r, g, b, _]| [r, g, b].map(|level| f32::from(level) / 255.0))
-            .collect();
+        let back = image.to_linear().pixels;
         let off = difference(&back, &light).rmse;
         assert!((off / EIGHT_BIT_FLOOR - 1.0).abs() < 0.01, "{off}");
     }

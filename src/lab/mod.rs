@@ -36,7 +36,9 @@ mod figure;
 pub use account::account;
 pub use candidates::{Candidate, Family, candidates};
 pub use clusters::{clusters, costs_of_choices};
-pub use explain::{Explanation, LightTerm, ShadingTerms, drawn, explain, first_hit, meet};
+pub use explain::{
+    Explanation, LightTerm, ShadingTerms, drawn, explain, first_hit, intersect_shape,
+};
 pub use figure::{Figure, PictureLook};
 pub use finding::finding;
 pub use growth::{Cost, Crowd, Growth, RenderMethod};
@@ -45,5 +47,5 @@ pub use measure::{EIGHT_BIT_FLOOR, ErrorMetrics, difference, mean, quantile, tra
 pub use pareto_front::{cheapest_within, closest_within, front};
 pub use quality::{Choice, Goal, choose};
 pub use scaling::{SharedPicture, scaling, scaling_csv};
-pub use study::{Measurement, REFERENCE_SAMPLES, Reference, Study, Timing};
+pub use study::{Measurement, Reference, Study, Timing};
 pub use table::{csv, table};

@@ -10,6 +10,7 @@ use crate::image::LinearRgb;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
+use crate::words::milliseconds;
 
 /// Samples along each side of a pixel in the reference for errors: with this number, none of its samples coincides
 /// with one of an even grid.
@@ -52,7 +53,7 @@ impl Choice {
     /// Describes the choice and its reason.
     pub fn words(&self) -> String {
         let level = |rmse: f64| format!("{:.1} dB", decibels(rmse));
-        let millis = |time: Duration| format!("{:.1} ms", time.as_secs_f64() * 1e3);
+        let millis = |time: Duration| format!("{:.1} ms", milliseconds(time));
         let goal = match (self.goal, self.is_met) {
             (Goal::Within(error), true) => format!("the cheapest within {}", level(error)),
             (Goal::Within(error), false) => {

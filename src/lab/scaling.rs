@@ -12,6 +12,7 @@ use super::table::csv_of;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::Tracer;
+use crate::words::milliseconds;
 
 /// Numbers of workers that are simulated.
 const WORKERS: [usize; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
@@ -77,10 +78,6 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
 /// None is known: everything is written to memory.
 pub fn scaling_csv(pictures: &[SharedPicture]) -> Result<String, csv::Error> {
     csv_of(pictures)
-}
-
-fn milliseconds(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e3
 }
 
 /// Returns when the last piece is done if each worker halves its range down to one piece, always keeping the first

@@ -10,6 +10,7 @@ use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::{Precision, Sampling, Scene};
 use crate::trace::{RenderControl, Threads, Tracer};
+use crate::words::milliseconds;
 
 /// Samples along each side of a pixel in the two pictures whose mean is the reference. The grids have only the centre
 /// of the pixel in common, so their errors are independent, and the difference of the pictures tells how large they
@@ -251,7 +252,7 @@ impl Study {
         dot.metrics = Some(difference(&light, &self.references[0]));
         dot.rays_per_pixel = drawn.rays as f64 / light.len().max(1) as f64;
         dot.picture = Some(Arc::new(drawn.picture));
-        dot.times.push(drawn.time.as_secs_f64() * 1e3);
+        dot.times.push(milliseconds(drawn.time));
         "f64".clone_into(&mut dot.lanes);
         Ok(())
     }
@@ -272,7 +273,7 @@ impl Study {
             let scene = dot.candidate.scene(&self.scene);
             let first = dot.times.first().copied().unwrap_or_default();
             match by_povray(&scene, Threads::current(), control) {
-                Ok(drawn) => dot.times.push(drawn.time.as_secs_f64() * 1e3),
+                Ok(drawn) => dot.times.push(milliseconds(drawn.time)),
                 Err(PovrayError::Stopped) => {}
                 // It has drawn this scene before: reuse its first time.
                 Err(_) => dot.times.push(first),
@@ -288,7 +289,7 @@ impl Study {
             }
             self.timed += 1;
             if self.timed > 1 {
-                dot.times.push(start.elapsed().as_secs_f64() * 1e3);
+                dot.times.push(milliseconds(start.elapsed()));
             }
         }
         true
@@ -330,7 +331,7 @@ impl Measurement {
 
     /// The number of timed runs that it needs.
     fn rounds(&self) -> usize {
-        let slow = SLOW_RUN.as_secs_f64() * 1e3;
+        let slow = milliseconds(SLOW_RUN);
         if self.times.first().is_some_and(|&time| time > slow) {
             SLOW_ROUNDS
         } else {

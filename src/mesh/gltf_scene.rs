@@ -23,7 +23,7 @@ use super::triangles::Triangles;
 /// Most objects and lists in the JSON: each can cost hundreds of bytes of memory.
 const MAX_OBJECTS: usize = 1_000_000;
 /// The points that are read may exceed the limit on points by this factor, because primitives may share an accessor.
-const MOST_SCANS: usize = 100;
+const MAX_SCANS: usize = 100;
 /// Extensions without which the triangles cannot be read.
 const GEOMETRY_EXTENSIONS: [&str; 4] = [
     INSTANCES,
@@ -314,7 +314,7 @@ impl Walk<'_> {
                 let matrices = skin.inverse_bind_matrices().map_or(0, |all| all.count());
                 let joints = skin.joints().count();
                 self.scanned = self.scanned.saturating_add(joints.max(matrices));
-                check_points(self.scanned / MOST_SCANS)?;
+                check_points(self.scanned / MAX_SCANS)?;
                 Placement::of_skin(&skin, transforms, &self.buffers)?
             }
             None => Placement::Whole(transforms[node.index()]),
@@ -355,7 +355,7 @@ impl Walk<'_> {
         // each counts for the points that it uses, and for those that are scanned to find them.
         self.points = self.points.saturating_add(corners.min(accessor.count()));
         self.scanned = self.scanned.saturating_add(accessor.count());
-        check_points(self.scanned / MOST_SCANS)?;
+        check_points(self.scanned / MAX_SCANS)?;
         self.faces = self.faces.saturating_add(match mode {
             Mode::Triangles => corners / 3,
             _ => corners.saturating_sub(2),

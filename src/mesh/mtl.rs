@@ -18,11 +18,11 @@ use crate::files::stays_inside;
 /// Most bytes of all material files of one OBJ file together: room for thousands of materials.
 const MAX_BYTES: u64 = 4 << 20;
 /// Most files that are searched for by a name that differs in case only.
-const MOST_SEARCHES: u32 = 32;
+const MAX_SEARCHES: u32 = 32;
 /// The illumination models with traced reflections: Alias/Wavefront, "Object files", appendix B1.
 const MIRRORING: RangeInclusive<u8> = 3..=7;
 /// Most characters of a file name in a message.
-const LONGEST_NAME: usize = 80;
+const MAX_NAME: usize = 80;
 
 /// Names that exporters write for faces without a material.
 const NO_MATERIAL: [&str; 2] = ["None", "(null)"];
@@ -56,7 +56,7 @@ impl<'a> Libraries<'a> {
         Self {
             folder,
             left: Cell::new(MAX_BYTES),
-            searches: Cell::new(MOST_SEARCHES),
+            searches: Cell::new(MAX_SEARCHES),
             names: RefCell::default(),
             missing: RefCell::default(),
             unknown: RefCell::default(),
@@ -81,20 +81,20 @@ impl<'a> Libraries<'a> {
     /// The note on material files that could not be read, or materials that are not in them.
     pub(super) fn note(&self) -> Option<String> {
         if let Some(missing) = self.missing.take() {
-            let name = excerpt(&missing, LONGEST_NAME);
+            let name = excerpt(&missing, MAX_NAME);
             return Some(format!(
                 "its colours are missing: there is no readable file {name} beside it"
             ));
         }
         if let Some(unknown) = self.unknown.take() {
-            let name = excerpt(&unknown, LONGEST_NAME);
+            let name = excerpt(&unknown, MAX_NAME);
             return Some(format!(
                 "it uses the material {name}, which is in none of its material files"
             ));
         }
         let has_any = !self.names.borrow().is_empty();
         let used_early = self.used_early.take().filter(|_| has_any)?;
-        let name = excerpt(&used_early, LONGEST_NAME);
+        let name = excerpt(&used_early, MAX_NAME);
         Some(format!(
             "some colours are missing: it uses {name} before naming its material file"
         ))

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::words::counted;
 
 /// Most corners of a polygon that is cut by ear clipping, which usually takes quadratic time.
-const MOST_CORNERS: usize = 4096;
+const MAX_CORNERS: usize = 4096;
 /// Largest value of twice a triangle's area that counts as straight, as a share of the squared size of the polygon, to
 /// allow for rounding.
 const MAX_STRAIGHT_AREA: f64 = 1e-12;
@@ -41,7 +41,7 @@ pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bo
         .copied()
         .chain(fan.iter().map(|face| face[2]))
         .collect();
-    if corners.len() > MOST_CORNERS {
+    if corners.len() > MAX_CORNERS {
         return true;
     }
     let projected: Vec<DVec2> = corners
@@ -62,7 +62,7 @@ pub(super) fn note_of_uncut(count: usize) -> Option<String> {
     (count > 0).then(|| {
         let faces = counted(count, "face");
         format!(
-            "{faces} with more than {MOST_CORNERS} corners may be filled in where they are concave"
+            "{faces} with more than {MAX_CORNERS} corners may be filled in where they are concave"
         )
     })
 }

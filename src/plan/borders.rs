@@ -6,7 +6,7 @@ use super::components::components_along_edges;
 use crate::simd::Vec3;
 
 /// Maximum number of faces on the way from one border of a mesh to the other.
-const LONGEST_WALK: usize = 32;
+const MAX_WALK: usize = 32;
 
 /// The connectivity of faces along their edges.
 pub struct Borders {
@@ -141,7 +141,7 @@ impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
         let mut point = (from + to) * 0.5;
         let mut direction = inwards(&corners, side);
         let mut length = 0.0;
-        for _ in 0..LONGEST_WALK {
+        for _ in 0..MAX_WALK {
             let corners = (self.corners)(face);
             // The line crosses a side where its height above that side becomes zero.
             let crossing = |side: usize| {

@@ -19,10 +19,10 @@ const MIN_HEIGHT_OVER_PIECE: f64 = 1e-7;
 /// much, none.
 const MIN_DISTANCE_OF_BORDER: f64 = 3e-4;
 /// Maximum number of pairs of an object and a light that are checked.
-const MOST_PAIRS: usize = 100_000;
+const MAX_PAIRS: usize = 100_000;
 
 /// Maximum number of faces of meshes that are compared with lights, in all: a millisecond.
-const MOST_FACES: usize = 20_000;
+const MAX_FACES: usize = 20_000;
 
 /// Least distance between the surfaces of two spheres for single precision, as a share of the scene's extent: if
 /// they are nearer everywhere, rounding decides which is seen, or whether one shadows the other.
@@ -33,9 +33,9 @@ const MIN_GAP_PER_RADIUS: f64 = 1e-2;
 /// be at the same distance, and the first one would be seen.
 const MIN_GAP_OF_PIECES: f64 = 1e-6;
 /// Maximum number of pieces that are compared with each other.
-const MOST_PIECES: usize = 64;
+const MAX_PIECES: usize = 64;
 /// Maximum number of spheres that are compared with each other.
-const MOST_SPHERES: usize = 2_000;
+const MAX_SPHERES: usize = 2_000;
 
 /// Returns whether a point is almost on a curved surface.
 pub fn is_almost_on(shape: &Shape, point: DVec3) -> bool {
@@ -51,7 +51,7 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
     };
     let lights = || checked_lights(scene);
     let has_lights = lights().next().is_some();
-    let has_few_faces = scene.faces() * lights().count() <= MOST_FACES;
+    let has_few_faces = scene.faces() * lights().count() <= MAX_FACES;
     let visible = scene.visible_objects();
     let shapes = visible.map(|object| &object.shape);
     // Without lights only planes matter; the many other objects are skipped.
@@ -101,7 +101,7 @@ fn is_near_box(point: DVec3, (low, high): (DVec3, DVec3), least: f64) -> bool {
 /// The lights to check: all of them, or none if there are very many.
 fn checked_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     let pairs = scene.objects.len() * scene.lights.len();
-    let are_few = pairs <= MOST_PAIRS;
+    let are_few = pairs <= MAX_PAIRS;
     scene.visible_lights().filter(move |_| are_few)
 }
 
@@ -123,7 +123,7 @@ pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
 
 /// Returns whether two flat pieces are a tiny distance apart. Those that coincide are ordered by ties.
 pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
-    let pieces: Vec<_> = visible_pieces(scene).take(MOST_PIECES).collect();
+    let pieces: Vec<_> = visible_pieces(scene).take(MAX_PIECES).collect();
     pieces.iter().enumerate().any(|(index, piece)| {
         let mut others = pieces[index + 1..].iter();
         others.any(|other| {
@@ -140,8 +140,8 @@ pub fn has_twins(scene: &Scene, extent: f64) -> bool {
         Shape::Sphere(sphere) => Some((sphere.along(), sphere)),
         _ => None,
     });
-    let mut spheres: Vec<_> = spheres.take(MOST_SPHERES + 1).collect();
-    if spheres.len() > MOST_SPHERES {
+    let mut spheres: Vec<_> = spheres.take(MAX_SPHERES + 1).collect();
+    if spheres.len() > MAX_SPHERES {
         return false;
     }
     spheres.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));

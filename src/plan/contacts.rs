@@ -12,12 +12,12 @@ use crate::scene::{Coincidence, List, Object, Overlap, Projection, Scene, Shape,
 
 /// Maximum number of objects that contain lights or the eye and are kept out of the tree; if there are more, all
 /// stay in it.
-const MOST_OUTSIDE_TREE: usize = 256;
+const MAX_OUTSIDE_TREE: usize = 256;
 /// The same for objects that share a surface with others: more of them are found faster in the tree.
-const MOST_SHARING_OUTSIDE: usize = 32;
+const MAX_SHARING_OUTSIDE: usize = 32;
 
 /// Maximum number of pairs of an object and a light that are checked: ten milliseconds whenever either has changed.
-const MOST_PAIRS: usize = 1_000_000;
+const MAX_PAIRS: usize = 1_000_000;
 
 /// Distance from a curved surface up to which a point counts as on it, in radii.
 const ON_CURVED: f64 = 1e-11;
@@ -65,7 +65,7 @@ pub struct LightContacts {
 impl LightContacts {
     /// Finds the contacts of lights at these positions; none if that would take too long.
     pub fn new(objects: &List<Object>, lights: &[DVec3]) -> Self {
-        if objects.len() * lights.len() > MOST_PAIRS {
+        if objects.len() * lights.len() > MAX_PAIRS {
             return Self::default();
         }
         let held_by = planes_through(objects, lights);
@@ -160,7 +160,7 @@ impl Contacts {
     fn find_eye_contacts(&mut self, scene: &Scene, is_parallel: bool) {
         let eye = scene.camera.position;
         let direction = unit(scene.camera.look_at).unwrap_or_default();
-        for (index, Object { shape, .. }) in visible_objects(&scene.objects) {
+        for (index, Object { shape, .. }) in scene.objects.visible() {
             if let Some(piece) = shape.plane_piece() {
                 let holds_eye = piece.height(eye) == 0.0;
                 if holds_eye && (!is_parallel || piece.is_perpendicular_to(direction)) {
@@ -191,31 +191,27 @@ impl Contacts {
         let lights = held_by.iter().flatten().chain(on_balls.iter().flatten());
         let eye = self.edge_on.iter().chain(&self.eye_object).copied();
         let holders: BTreeSet<usize> = lights.copied().chain(eye).collect();
-        if holders.len() <= MOST_OUTSIDE_TREE {
+        if holders.len() <= MAX_OUTSIDE_TREE {
             self.outside_tree = holders;
         }
-        if self.sharing.len() <= MOST_SHARING_OUTSIDE {
+        if self.sharing.len() <= MAX_SHARING_OUTSIDE {
             self.outside_tree.extend(&self.sharing);
         }
         self.outside_tree.extend(&self.covered);
     }
 }
 
-/// The visible objects with their indices.
-fn visible_objects(objects: &List<Object>) -> impl Iterator<Item = (usize, &Object)> {
-    let objects = objects.iter().enumerate();
-    objects.filter(|(_, object)| object.visible)
-}
-
 /// Returns whether a point may be on a curved object.
 fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
-    visible_objects(objects).any(|(_, object)| object.shape.height_per_radius(point) < NEAR_CURVED)
+    objects
+        .visible()
+        .any(|(_, object)| object.shape.height_per_radius(point) < NEAR_CURVED)
 }
 
 /// Returns for each point the visible flat objects whose planes contain it.
 fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices> {
     let mut through = vec![ObjectIndices::new(); points.len()];
-    for (index, object) in visible_objects(objects) {
+    for (index, object) in objects.visible() {
         let Some(piece) = object.shape.plane_piece() else {
             continue;
         };
@@ -231,7 +227,7 @@ fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices
 /// Returns for each point the first visible ball on whose surface it is.
 fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
     let is_ball = |object: &Object| matches!(object.shape, Shape::Sphere(_));
-    let visible = visible_objects(objects);
+    let visible = objects.visible();
     let balls: Vec<_> = visible.filter(|(_, object)| is_ball(object)).collect();
     let at = |point: &DVec3| {
         let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_CURVED;

@@ -8,9 +8,10 @@ use crate::simd::{Real, Vec3};
 /// Extents of the largest flat bounded surfaces, in scene units; 0 if the stretching of pixels is not computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Flats<R> {
-    /// Of primitives outside of meshes, including spheres: a large sphere seen as the ground looks flat.
+    /// Largest extent of a primitive outside of meshes, including spheres: a large sphere seen as the ground looks
+    /// flat.
     pub loose: R,
-    /// Of the faces of meshes.
+    /// Largest extent of a face of a mesh.
     pub in_meshes: R,
 }
 

@@ -25,9 +25,9 @@ use crate::simd::{Real, Vec3};
 /// Number of objects up to which testing those visible in a tile is faster than traversing a tree.
 pub const SMALLEST_TREE: usize = 32;
 /// Number of objects above which a tree is always faster.
-pub const LARGEST_LIST: usize = 384;
+pub const MAX_LIST: usize = 384;
 /// The same for triangles, which rarely come alone.
-pub const MOST_LISTED_TRIANGLES: usize = 128;
+pub const MAX_LISTED_TRIANGLES: usize = 128;
 /// Between these numbers, a tree is used if the objects fill a space whose every side is this many times as long as
 /// they are large: those visible in a tile are then scattered, and most may be in front of its lights. With 60 to
 /// 384 balls in such a cloud, a list takes 1.2 to 5 times as long.
@@ -227,14 +227,14 @@ pub fn uses_tree(scene: &Scene, request: &RenderRequest, may_cull: bool) -> bool
         Accelerator::Auto => {
             let triangles = visible_triangles(scene);
             let bounded = visible().filter_map(|object| object.shape.bounds());
-            let bounded: Vec<_> = bounded.take(LARGEST_LIST + 1).collect();
+            let bounded: Vec<_> = bounded.take(MAX_LIST + 1).collect();
             let pixels_each = match request.sampling {
                 Sampling::Adaptive { .. } => ADAPTIVE_PIXELS_PER_OBJECT,
                 Sampling::Centres | Sampling::Grid(_) => PIXELS_PER_OBJECT,
             };
             let are_small = request.pixels() < bounded.len() as u64 * pixels_each;
-            bounded.len() > LARGEST_LIST
-                || triangles.take(MOST_LISTED_TRIANGLES + 1).count() > MOST_LISTED_TRIANGLES
+            bounded.len() > MAX_LIST
+                || triangles.take(MAX_LISTED_TRIANGLES + 1).count() > MAX_LISTED_TRIANGLES
                 || (bounded.len() > SMALLEST_TREE && (are_small || fills_space(&bounded)))
         }
     };

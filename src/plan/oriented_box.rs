@@ -10,7 +10,7 @@ use crate::simd::{Real, Vec3};
 const WORTH_TESTING: f64 = 0.25;
 /// Number of triangles above which a mesh has none: finding it would take time whenever the mesh is rotated, and the
 /// boxes in its tree are small.
-const MOST_TRIANGLES: usize = 10_000;
+const MAX_TRIANGLES: usize = 10_000;
 
 /// A box with axes of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ impl<R: Real> OrientedBox<R> {
     /// Finds a box around triangles, along their longest direction and the one farthest from that. Returns `None`
     /// if it is hardly smaller than `bounds`, their axis-aligned box.
     pub fn around(triangles: &[PackedTriangle<R>], bounds: &BoundingBox<R>) -> Option<Self> {
-        if triangles.is_empty() || triangles.len() > MOST_TRIANGLES {
+        if triangles.is_empty() || triangles.len() > MAX_TRIANGLES {
             return None;
         }
         let corners = || {

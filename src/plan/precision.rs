@@ -34,15 +34,15 @@ const MAX_NUMBER: usize = 1 << 24;
 /// Maximum number of primitives that are planned in both precisions: they then take 200 MB instead of 100, and a
 /// fifth longer to open. A million faces, few of which are hit by rays that have also hit their neighbours, take as
 /// long in double precision alone, and two thirds of the memory.
-const MOST_FILTERED: usize = 300_000;
+const MAX_FILTERED: usize = 300_000;
 /// Number of objects up to which there are so few edges that rounding hardly shows: of 1,000 such random scenes at
 /// 200 × 200 pixels, not one pixel is off by more than a step, whereas 3 of 10 such scenes with meshes have some.
 /// Tracing doubtful samples again makes them take 1.4 times as long.
-const FEWEST_FILTERED: usize = 32;
+const MIN_FILTERED: usize = 32;
 /// Number of pixels up to which pictures of so few objects are not filtered. Rounding decides some of these pixels:
 /// one in three million in the demo, two in a million with mirror balls. Nobody waits for larger pictures in the
 /// window; 3840 × 2160 is below the limit.
-const MOST_UNFILTERED: u64 = 10_000_000;
+const MAX_UNFILTERED: u64 = 10_000_000;
 
 /// Returns whether a picture is traced in double precision.
 pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
@@ -57,7 +57,7 @@ pub fn is_double(scene: &Scene, request: &RenderRequest) -> bool {
 /// Returns whether samples of a single-precision picture that rounding may decide are traced again in double
 /// precision.
 pub fn is_filtered(scene: &Scene, request: &RenderRequest) -> bool {
-    is_rounding_seen(scene, request) && primitives(scene) <= MOST_FILTERED
+    is_rounding_seen(scene, request) && primitives(scene) <= MAX_FILTERED
 }
 
 /// Returns whether features may be smaller and farther away because doubtful samples are traced again. Independent
@@ -69,7 +69,7 @@ pub fn allows_finer_features(scene: &Scene, request: &RenderRequest) -> bool {
 /// Returns whether a scene has too many primitives for both precisions, so that all of it is traced in double
 /// precision.
 pub fn is_too_large_for_both(scene: &Scene, request: &RenderRequest) -> bool {
-    is_rounding_seen(scene, request) && primitives(scene) > MOST_FILTERED
+    is_rounding_seen(scene, request) && primitives(scene) > MAX_FILTERED
 }
 
 /// Returns whether rounding to single precision would show on edges if nothing were done about it.
@@ -77,12 +77,12 @@ fn is_rounding_seen(scene: &Scene, request: &RenderRequest) -> bool {
     request.precision == Precision::Auto
         && matches!(request.model, Model::Needed | Model::Unculled)
         && request.methods.is_tight()
-        && (has_many_edges(scene) || request.pixels() > MOST_UNFILTERED)
+        && (has_many_edges(scene) || request.pixels() > MAX_UNFILTERED)
 }
 
 fn has_many_edges(scene: &Scene) -> bool {
     let visible = || scene.visible_objects();
-    visible().count() > FEWEST_FILTERED || visible().any(|object| object.faces() > 0)
+    visible().count() > MIN_FILTERED || visible().any(|object| object.faces() > 0)
 }
 
 /// The number of visible objects and faces.
@@ -369,7 +369,7 @@ mod tests {
                 .push(Object::new("Mesh", "plane", Mesh::of(triangles)));
             scene
         };
-        for (faces, expected) in [(MOST_FILTERED - 1, false), (MOST_FILTERED, true)] {
+        for (faces, expected) in [(MAX_FILTERED - 1, false), (MAX_FILTERED, true)] {
             let (scene, mut request) = (of_faces(faces), RenderRequest::sized(64, 64));
             assert_eq!(is_double(&scene, &request), expected, "{faces}");
             assert_eq!(is_filtered(&scene, &request), !expected, "{faces}");

@@ -11,7 +11,7 @@ use crate::primitive::{CornerNormals, PackedTriangle};
 use crate::simd::{Real, Vec3};
 
 /// Number of faces at a corner above which they stay flat there, since each is compared with all others.
-const MOST_FACES_AT_CORNER: usize = 1024;
+const MAX_FACES_AT_CORNER: usize = 1024;
 
 /// Margin by which the cosine between two faces must exceed that of the limiting angle for them to be smooth:
 /// several roundings of single precision, in which files store corners, so that faces that meet at exactly that
@@ -38,7 +38,7 @@ pub fn corner_normals(triangles: &[PackedTriangle<f64>], degrees: f64) -> Vec<Co
         let own = normal(index);
         let normals = numbers.map(|number| {
             let faces_here = corner_faces.of_corner(number);
-            if faces_here.len() > MOST_FACES_AT_CORNER {
+            if faces_here.len() > MAX_FACES_AT_CORNER {
                 return triangle.normal;
             }
             let alike = faces_here.iter().filter(|&&(face, _)| {
@@ -101,7 +101,7 @@ fn neighbour(
 ) -> Option<(usize, bool)> {
     let (from, to) = (faces[face][edge], faces[face][(edge + 1) % 3]);
     let faces_here = corner_faces.of_corner(from);
-    if faces_here.len() > MOST_FACES_AT_CORNER {
+    if faces_here.len() > MAX_FACES_AT_CORNER {
         return None;
     }
     let others = faces_here

@@ -12,7 +12,7 @@ use crate::scene::{Scene, Shape};
 use crate::simd::{Real, Vec3};
 
 /// Maximum number of faces of a solid, whose corners are all compared with each face.
-const MOST_FACES: usize = 256;
+const MAX_FACES: usize = 256;
 /// Distance by which a point must be in front of or behind a face to count as such, as a share of the solid's size:
 /// more than single precision can shift a ray.
 const MARGIN: f64 = 1e-5;
@@ -35,7 +35,7 @@ impl Solids {
     fn made_of(triangles: Vec<[DVec3; 3]>) -> Self {
         let mut solids = connected(&triangles);
         solids.retain(|faces| {
-            faces.len() <= MOST_FACES
+            faces.len() <= MAX_FACES
                 && are_closed(faces.iter().map(|&face| triangles[face]))
                 && is_convex(&triangles, faces)
         });

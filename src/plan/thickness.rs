@@ -10,13 +10,13 @@ use super::components::inside_out;
 use crate::primitive::PackedTriangle;
 use crate::simd::Vec3;
 
-/// Of the faces in a node, one in this many is measured for all of them, and also each that faces in a new direction.
+/// One face in this many of a node is measured for all its faces, and also each that faces in a new direction.
 const MEASURED_STEP: usize = 8;
 /// Cosine between the normals of two faces above which they face the same way.
 const SAME_SIDE_COSINE: f64 = 0.7;
 /// Maximum number of nodes visited behind a face: where the boxes of long thin faces overlap, it would be all of
 /// them.
-const MOST_NODES: usize = 256;
+const MAX_NODES: usize = 256;
 /// Barycentric coordinates of the point where a face is measured: off the centroid, which lies in front of an edge
 /// of the opposite side if that is its mirror image.
 const MEASURED_POINT: [f64; 3] = [0.38, 0.34, 0.28];
@@ -95,7 +95,7 @@ impl Faces<'_> {
         };
         let middle = a * weight_a + b * weight_b + c * weight_c;
         let mut nearest = f64::INFINITY;
-        let ray = ((middle, inwards), MOST_NODES);
+        let ray = ((middle, inwards), MAX_NODES);
         let is_complete = cast(self.triangles, self.bvh, ray, |other, t| {
             if other as usize != face {
                 nearest = nearest.min(t);

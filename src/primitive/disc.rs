@@ -211,7 +211,7 @@ mod tests {
             let Some(direction) = (target - eye).try_normalize() else { return Ok(()) };
             prop_assume!(normal.dot(direction).abs() > 1e-3);
             let ray = Ray { origin: Vec3::from_dvec3(eye), direction: Vec3::from_dvec3(direction) };
-            let t: f64 = disc(normal, 0.7).meet(&ray, &Methods::default());
+            let t: f64 = disc(normal, 0.7).intersect_single(&ray, &Methods::default());
             prop_assert_eq!(t.is_finite(), share < 1.0);
             if t.is_finite() {
                 prop_assert!((ray.at(t).to_dvec3() - target).length() < 1e-9);
@@ -239,7 +239,7 @@ mod tests {
             prop_assert!(chord.from - 1e-6 <= 2.0 && 2.0 <= chord.to + 1e-6, "{chord:?}");
             let sine = (1.0 - normal.dot(direction).powi(2)).sqrt();
             prop_assert!(chord.to - chord.from <= 1.2 * sine + 1e-9, "{chord:?}");
-            if target.meet(&ray, &Methods::default()).is_finite() {
+            if target.intersect_single(&ray, &Methods::default()).is_finite() {
                 prop_assert!(approach.distance <= 1e-9, "a hit is inside: {}", approach.distance);
             }
         }
@@ -286,15 +286,15 @@ mod tests {
             radius: 1.0_f32,
             material: 0,
         };
-        let meet = |ray: Ray<f32>| lying.meet(&ray, &Methods::default());
-        assert_eq!(meet(ray(1.0, 0.0)), f32::INFINITY, "0/0");
-        assert_eq!(meet(ray(1.0, 0.5)), f32::INFINITY);
+        let intersect = |ray: Ray<f32>| lying.intersect_single(&ray, &Methods::default());
+        assert_eq!(intersect(ray(1.0, 0.0)), f32::INFINITY, "0/0");
+        assert_eq!(intersect(ray(1.0, 0.5)), f32::INFINITY);
         let standing = PackedDisc {
             normal: Vec3::new(1.0, 0.0, 0.0),
             ..lying
         };
-        let meet = |ray: Ray<f32>| standing.meet(&ray, &Methods::default());
-        assert_eq!(meet(ray(1.0, 0.5)), 2.0);
-        assert_eq!(meet(ray(-1.0, 0.5)), f32::INFINITY);
+        let intersect = |ray: Ray<f32>| standing.intersect_single(&ray, &Methods::default());
+        assert_eq!(intersect(ray(1.0, 0.5)), 2.0);
+        assert_eq!(intersect(ray(-1.0, 0.5)), f32::INFINITY);
     }
 }

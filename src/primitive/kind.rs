@@ -169,7 +169,7 @@ pub trait Primitive<R: Real>: Copy + Debug + Send + Sync {
 
     /// [`Self::intersect`] for a single test, including the preparation.
     #[inline(always)]
-    fn meet<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, methods: &Methods) -> L {
+    fn intersect_single<L: SimdFloat<Real = R>>(&self, rays: &Ray<L>, methods: &Methods) -> L {
         self.intersect(rays, &Self::prepare(rays.direction), methods)
     }
 }

@@ -147,8 +147,8 @@ mod tests {
         }
     }
 
-    fn meet(ray: &Ray<f32>) -> f32 {
-        floor().meet(ray, &Methods::default())
+    fn intersect(ray: &Ray<f32>) -> f32 {
+        floor().intersect_single(ray, &Methods::default())
     }
 
     #[test]
@@ -156,7 +156,7 @@ mod tests {
         for degrees in [45.0, 1.0, 0.01, 1e-4, 1e-5] {
             let ray = ray_at_degrees(degrees);
             let exact = 1.0 / -f64::from(ray.direction.y);
-            let error = (f64::from(meet(&ray)) / exact - 1.0).abs();
+            let error = (f64::from(intersect(&ray)) / exact - 1.0).abs();
             let u = f64::from(f32::UNIT_ROUNDOFF);
             assert!(
                 error <= 8.0 * u / degrees.to_radians().sin(),
@@ -167,12 +167,12 @@ mod tests {
 
     #[test]
     fn edge_on_and_behind_are_misses() {
-        assert_eq!(meet(&ray_at_degrees(0.0)), f32::INFINITY);
-        assert_eq!(meet(&ray_at_degrees(-30.0)), f32::INFINITY);
+        assert_eq!(intersect(&ray_at_degrees(0.0)), f32::INFINITY);
+        assert_eq!(intersect(&ray_at_degrees(-30.0)), f32::INFINITY);
         let inside = Ray {
             origin: Vec3::splat(0.0),
             ..ray_at_degrees(0.0)
         };
-        assert_eq!(meet(&inside), f32::INFINITY, "0/0");
+        assert_eq!(intersect(&inside), f32::INFINITY, "0/0");
     }
 }

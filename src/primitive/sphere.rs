@@ -281,12 +281,12 @@ mod tests {
         (ray, sphere, t)
     }
 
-    fn meet(sphere: SphereMethod, ray: &Ray<f32>, target: &PackedSphere<f32>) -> f32 {
+    fn intersect(sphere: SphereMethod, ray: &Ray<f32>, target: &PackedSphere<f32>) -> f32 {
         let methods = Methods {
             sphere,
             ..Methods::default()
         };
-        target.meet(ray, &methods)
+        target.intersect_single(ray, &methods)
     }
 
     fn refined(ray: &Ray<f32>, sphere: &PackedSphere<f32>, t: f32) -> (Vec3<f32>, Vec3<f32>) {
@@ -305,7 +305,7 @@ mod tests {
             tries
                 .filter(|&(n, miss)| {
                     let (ray, sphere, _) = aimed(4096.0, miss, turns(n));
-                    meet(method, &ray, &sphere).is_finite() != (miss < 1.0)
+                    intersect(method, &ray, &sphere).is_finite() != (miss < 1.0)
                 })
                 .count()
         };
@@ -323,7 +323,7 @@ mod tests {
                 .map(|n| {
                     let miss = 0.99 * f64::from(n % 97) / 97.0;
                     let (ray, sphere, exact) = aimed(ratio, miss, turns(n));
-                    (f64::from(meet(SphereMethod::Stable, &ray, &sphere)) - exact).abs()
+                    (f64::from(intersect(SphereMethod::Stable, &ray, &sphere)) - exact).abs()
                 })
                 .collect();
             errors.sort_by(f64::total_cmp);
@@ -355,7 +355,7 @@ mod tests {
                 origin: Vec3::new(0.0, y, 0.0),
                 direction,
             };
-            let t = meet(SphereMethod::Stable, &ray, &sphere);
+            let t = intersect(SphereMethod::Stable, &ray, &sphere);
             let (point, normal) = refined(&ray, &sphere, t);
             let on_surface = (point.to_dvec3().length() - radius).abs() / radius;
             assert!(
@@ -378,7 +378,7 @@ mod tests {
             direction: Vec3::new(0.0, 0.0, 1.0),
         };
         for method in [SphereMethod::Stable, SphereMethod::Classic] {
-            assert_eq!(meet(method, &ray, &sphere), f32::INFINITY);
+            assert_eq!(intersect(method, &ray, &sphere), f32::INFINITY);
         }
     }
 
@@ -386,7 +386,7 @@ mod tests {
         #[test]
         fn a_refined_hit_lies_on_the_surface(ratio in 1.1..1e4_f64, miss in 0.0..0.95_f64, turn in prop::array::uniform3(0.0..6.0_f64)) {
             let (ray, sphere, _) = aimed(ratio, miss, turn);
-            let t = meet(SphereMethod::Stable, &ray, &sphere);
+            let t = intersect(SphereMethod::Stable, &ray, &sphere);
             prop_assert!(t.is_finite());
             let (point, normal) = refined(&ray, &sphere, t);
             let off = ((point - sphere.center).to_dvec3().length() - 1.0).abs();
@@ -398,7 +398,7 @@ mod tests {
         fn from_the_wall_only_the_far_side_is_met(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
             let Some(d) = DVec3::from(d).try_normalize() else { return Ok(()) };
             let (ray, sphere, _) = aimed(3.0, 0.2, turn);
-            let (point, normal) = refined(&ray, &sphere, meet(SphereMethod::Stable, &ray, &sphere));
+            let (point, normal) = refined(&ray, &sphere, intersect(SphereMethod::Stable, &ray, &sphere));
             let onwards = Ray { origin: point, direction: Vec3::from_dvec3(d) };
             let t = sphere.exit(&onwards);
             prop_assert_eq!(t.is_finite(), normal.dot(onwards.direction) < 0.0);

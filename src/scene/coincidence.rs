@@ -9,27 +9,25 @@ use super::object::Object;
 use super::shape::{Outline, PlanePiece, Shape, Sphere};
 
 /// Largest number of objects that are examined: takes some ten milliseconds.
-const MOST_OBJECTS: usize = 200_000;
+const MAX_OBJECTS: usize = 200_000;
 
 /// Largest number of pairs of flat objects whose bounding boxes are compared, and of those with overlapping boxes
 /// whose surfaces are: takes as long.
-const MOST_PAIRS: usize = 4_000_000;
-const MOST_COMPARED: usize = 200_000;
+const MAX_PAIRS: usize = 4_000_000;
+const MAX_COMPARED: usize = 200_000;
 
 /// Returns all pairs of visible objects that share a surface, sorted. Coordinates are taken relative to `centre`.
 /// With hundreds of thousands of objects, nothing is examined. Some pairs may be missed with thousands of flat
 /// objects in one place, with large meshes, or with hundreds of meshes that overlap tens of thousands of other
 /// objects.
 pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
-    if objects.len() > MOST_OBJECTS {
+    if objects.len() > MAX_OBJECTS {
         return Vec::new();
     }
-    let (mut comparisons, mut pairs) = (MOST_COMPARED, MOST_PAIRS);
-    let visible = objects.iter().enumerate();
-    let visible = visible.filter(|(_, object)| object.visible);
+    let (mut comparisons, mut pairs) = (MAX_COMPARED, MAX_PAIRS);
     let mut found = Vec::new();
     let (mut balls, mut endless, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, object) in visible {
+    for (index, object) in objects.visible() {
         if let Shape::Sphere(ball) = &object.shape {
             balls.push((index, ball));
         }
@@ -88,7 +86,7 @@ pub fn coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
 fn add_balls(mut balls: Vec<(usize, &Sphere)>, found: &mut Vec<Coincidence>) {
     balls.sort_by(|(_, one), (_, other)| one.along().total_cmp(&other.along()));
     let mut is_known = vec![false; balls.len()];
-    let mut pairs = MOST_PAIRS;
+    let mut pairs = MAX_PAIRS;
     for rank in 0..balls.len() {
         if is_known[rank] {
             continue;

@@ -6,12 +6,11 @@ use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, Overlap, coincidences};
 use super::direction::unit;
 use super::frame::CoordinateFrame;
-use super::object::Object;
 use super::shape::{Outline, Shape};
 use super::whole::Scene;
 
 /// Largest number of pairs of an object and a light that are examined.
-const MOST_LIGHT_PAIRS: usize = 20_000;
+const MAX_LIGHT_PAIRS: usize = 20_000;
 
 /// Tolerance within which a light counts as on a surface, as a share of the relevant distances.
 const ON_SURFACE: f64 = 1e-9;
@@ -67,7 +66,7 @@ pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
     let extent = CoordinateFrame::of(scene).map_or(1.0, |frame| 2.0 * frame.extent);
     let eye = scene.camera.position;
-    for (index, object) in visible(scene) {
+    for (index, object) in scene.objects.visible() {
         let name = &object.name;
         if is_inside(&object.shape, eye) {
             let words = format!("The camera is inside {name}");
@@ -81,18 +80,13 @@ pub fn camera_hints(scene: &Scene) -> Vec<Hint> {
     hints
 }
 
-fn visible(scene: &Scene) -> impl Iterator<Item = (usize, &Object)> {
-    let objects = scene.objects.iter().enumerate();
-    objects.filter(|(_, object)| object.visible)
-}
-
 /// Returns all other hints, which do not depend on the camera.
 pub fn scene_hints(scene: &Scene) -> Vec<Hint> {
     let mut hints = Vec::new();
-    let is_small = scene.objects.len() * scene.lights.len() <= MOST_LIGHT_PAIRS;
+    let is_small = scene.objects.len() * scene.lights.len() <= MAX_LIGHT_PAIRS;
     for (index, light) in scene.lights.iter().enumerate().filter(|_| is_small) {
         let is_shining = light.visible && light.intensity > 0.0;
-        for (_, object) in visible(scene).filter(|_| is_shining) {
+        for (_, object) in scene.objects.visible().filter(|_| is_shining) {
             let name = &object.name;
             if is_on(&object.shape, light.position) {
                 let words = format!("{} is on the surface of {name}", light.name);

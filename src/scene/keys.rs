@@ -341,7 +341,7 @@ fn move_keys<T: Clone>(
     let others = others.filter(|(index, _)| are_copies || indices.binary_search(index).is_err());
     let others: Vec<&Key<T>> = others.map(|(_, key)| key).collect();
     let near = 1.0 / animation.frames_per_second;
-    // Of the keys that a moved key may replace, the nearest: recorded keys may be much closer together than frames.
+    // The nearest of the keys that a moved key may replace: recorded keys may be much closer together than frames.
     let replaced = |key: &Key<T>| {
         // A copy has no earlier position.
         let from = if are_copies {

@@ -260,14 +260,14 @@ impl<T: Clone + PartialEq> PartialEq for List<T> {
 
 impl<T: Clone> Index<usize> for List<T> {
     type Output = T;
-    #[expect(clippy::expect_used, reason = "what indexing is for")]
+    #[expect(clippy::expect_used, reason = "indexing panics if there is no item")]
     fn index(&self, index: usize) -> &T {
         self.get(index).expect("an item at the index")
     }
 }
 
 impl<T: Clone> IndexMut<usize> for List<T> {
-    #[expect(clippy::expect_used, reason = "what indexing is for")]
+    #[expect(clippy::expect_used, reason = "indexing panics if there is no item")]
     fn index_mut(&mut self, index: usize) -> &mut T {
         self.get_mut(index).expect("an item at the index")
     }

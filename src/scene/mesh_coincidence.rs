@@ -10,18 +10,18 @@ use super::shape::{Describe as _, Mesh, Outline, PlanePiece, Shape, Triangle};
 use crate::mesh::are_closed;
 
 /// Largest number of faces that are compared with their surroundings, summed over all pairs of objects.
-const MOST_FACES: usize = 200_000;
+const MAX_FACES: usize = 200_000;
 
 /// Largest number of pairs of objects whose bounding boxes are compared, and of pairs of faces: takes some ten
 /// milliseconds.
-const MOST_BOXES: usize = 4_000_000;
-const MOST_PAIRS: usize = 2_000_000;
+const MAX_BOXES: usize = 4_000_000;
+const MAX_PAIRS: usize = 2_000_000;
 
 /// Largest number of faces of a mesh that is tested for being a solid: takes a few milliseconds.
-const MOST_SOLID_FACES: usize = 20_000;
+const MAX_SOLID_FACES: usize = 20_000;
 
 /// Largest number of face corners that are compared with infinite planes: takes some ten milliseconds.
-const MOST_CORNERS: usize = 6_000_000;
+const MAX_CORNERS: usize = 6_000_000;
 
 /// Margin by which a bounding box is widened, as a share of its size.
 const BOX_MARGIN: f64 = 1e-6;
@@ -54,14 +54,14 @@ pub enum Overlap {
 
 /// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
-    let visible = objects.iter().enumerate();
-    let visible = visible.filter(|(_, object)| object.visible);
-    let planes = visible.clone().filter_map(|(index, object)| {
+    let planes = objects.visible().filter_map(|(index, object)| {
         let plane = object.shape.plane_piece()?;
         (plane.outline == Outline::Endless).then_some((index, plane))
     });
     let planes: Vec<(usize, PlanePiece)> = planes.collect();
-    let bounded = visible.filter_map(|(index, object)| BoxedSurface::of(index, object));
+    let bounded = objects
+        .visible()
+        .filter_map(|(index, object)| BoxedSurface::of(index, object));
     let mut bounded: Vec<BoxedSurface> = bounded.collect();
     bounded.sort_by(|one, other| one.start().total_cmp(&other.start()));
     let mut found = Vec::new();
@@ -72,7 +72,7 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
             extent,
         });
     };
-    let mut corners = MOST_CORNERS;
+    let mut corners = MAX_CORNERS;
     for one in &bounded {
         let Shape::Mesh(mesh) = one.shape else {
             continue;
@@ -85,13 +85,13 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
     }
     let mut search = Search {
         centre,
-        faces: MOST_FACES,
-        pairs: MOST_PAIRS,
-        pairs_of_sides: MOST_PAIRS,
+        faces: MAX_FACES,
+        pairs: MAX_PAIRS,
+        pairs_of_sides: MAX_PAIRS,
     };
     let all: Vec<&BoxedSurface> = bounded.iter().collect();
     let meshes: Vec<&BoxedSurface> = bounded.iter().filter(|one| one.is_mesh()).collect();
-    let (mut meshes_seen, mut boxes) = (0, MOST_BOXES);
+    let (mut meshes_seen, mut boxes) = (0, MAX_BOXES);
     for (rank, one) in bounded.iter().enumerate() {
         meshes_seen += usize::from(one.is_mesh());
         // Pairs without a mesh are found elsewhere, and there may be very many of them.
@@ -148,7 +148,7 @@ impl<'a> BoxedSurface<'a> {
             return None;
         };
         let triangles = mesh.source.triangles();
-        if triangles.faces().len() > MOST_SOLID_FACES || !are_closed(triangles.corners()) {
+        if triangles.faces().len() > MAX_SOLID_FACES || !are_closed(triangles.corners()) {
             return None;
         }
         let from = mesh.position;

@@ -103,4 +103,4 @@ pub use shape::{
     Sphere, Triangle,
 };
 pub use target::Owners;
-pub use whole::{MAX_BYTES, Scene, VERSION, around, default_ambient_intensity, light_pack};
+pub use whole::{MAX_BYTES, Scene, around, default_ambient_intensity, light_pack};

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::list::List;
 use super::notation;
 use super::shape::Shape;
 
@@ -51,6 +52,14 @@ impl Object {
             Shape::Mesh(mesh) => mesh.source.triangles().faces().len(),
             _ => 0,
         }
+    }
+}
+
+impl List<Object> {
+    /// Iterates over the visible objects with their indices.
+    pub fn visible(&self) -> impl Iterator<Item = (usize, &Object)> + Clone {
+        let objects = self.iter().enumerate();
+        objects.filter(|(_, object)| object.visible)
     }
 }
 

@@ -118,7 +118,7 @@ impl Scene {
 
     /// Iterates over the visible objects, in order.
     pub fn visible_objects(&self) -> impl Iterator<Item = &Object> + Clone {
-        self.objects.iter().filter(|object| object.visible)
+        self.objects.visible().map(|(_, object)| object)
     }
 
     /// Iterates over the lights that are switched on, in order.

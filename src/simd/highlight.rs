@@ -6,7 +6,7 @@
 use super::{Real, SimdFloat, Vec3};
 
 /// The largest exponent whose whole part is computed by repeated squaring, with a relative error below p·u.
-const LARGEST_SQUARED: f64 = 256.0;
+const MAX_SQUARED: f64 = 256.0;
 /// Number of square roots in [`logarithm`], and of squarings in [`exponential`].
 const HALVINGS: u32 = 6;
 /// Exponents below this give far less than one level.
@@ -29,7 +29,7 @@ pub enum Exponent {
 impl Exponent {
     /// Chooses the form for the exponent `p` ≥ 0.
     pub fn new(p: f64) -> Self {
-        if p > LARGEST_SQUARED {
+        if p > MAX_SQUARED {
             Self::Large(p)
         } else {
             Self::power(p)
@@ -53,7 +53,7 @@ impl Exponent {
             Self::Large(p) => p,
         };
         // Depends on p alone, not on the variant: the formula must not influence where samples are taken.
-        (p > LARGEST_SQUARED).then(|| 1.0 / p.sqrt())
+        (p > MAX_SQUARED).then(|| 1.0 / p.sqrt())
     }
 
     /// max(0, n·h)^p, where h is the unit vector along `half`; n·h counts as 0 if `half` has no direction. Off by at

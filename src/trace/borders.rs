@@ -30,8 +30,8 @@ pub struct Side {
 }
 
 impl PixelSides {
-    /// Loads what the pixels of a tile know. Of the pixels around it nothing is loaded, though they may know
-    /// something.
+    /// Loads what the pixels of a tile know. Nothing is loaded for the pixels around it, although messages for them
+    /// may exist.
     pub fn start(&mut self, tile: &Tile, messages: &EdgeMessages) {
         let (width, height) = (tile.width(), tile.rows.len());
         self.stride = width + 2;

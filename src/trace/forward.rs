@@ -69,7 +69,7 @@ impl<L: SimdFloat> Bounce<L> {
 
     /// What may be in doubt about the hits.
     ///
-    /// Of samples that search for an edge inside a pixel, only which of two surfaces a hair apart a camera ray hits,
+    /// For samples that search for an edge inside a pixel, only which of two surfaces a hair apart a camera ray hits,
     /// since they may swap places in whole pixels. Where rounding may decide what else they see, both sides of the
     /// edge are equally near: the pixel changes by one step of the finest grid, or by what remains of a cell that is
     /// not divided. In 1 scene of 30, this is more than one level, and at most 7, in one pixel or a few; doubting them

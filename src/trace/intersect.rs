@@ -23,7 +23,7 @@ pub struct Kernel<'a, L: SimdFloat, const TREE: bool> {
 
 #[expect(
     clippy::expl_impl_clone_on_copy,
-    reason = "derived, it would ask for the same of every lane"
+    reason = "`derive` would require `L: Clone`"
 )]
 impl<L: SimdFloat, const TREE: bool> Clone for Kernel<'_, L, TREE> {
     fn clone(&self) -> Self {

@@ -1,7 +1,7 @@
 //! The points of a tile that have a sample, numbered in the order in which they are requested.
 
 /// Least number of slots.
-const LEAST_SLOTS: u32 = 1 << 9;
+const MIN_SLOTS: u32 = 1 << 9;
 
 /// Points of a grid and their numbers: a hash table with open addressing (Knuth, "The Art of Computer Programming",
 /// vol. 3, 6.4, algorithm L), which fits into the first-level cache where an array of the whole grid would not.
@@ -18,7 +18,7 @@ impl Default for PointTable {
     fn default() -> Self {
         Self {
             points: Vec::new(),
-            slots: vec![0; LEAST_SLOTS as usize],
+            slots: vec![0; MIN_SLOTS as usize],
         }
     }
 }

@@ -11,8 +11,8 @@ use super::scan::{Test, TreeScan, scan_lists};
 use super::thin_cull::small_mesh_pixels;
 use super::thin_margin::ThinMargin;
 use super::thresholds::{
-    CROWDED_OBJECTS, LEAST_NOTED_DISTANCE, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_TO_LIGHTS,
-    MAX_SPREAD_WHEN_CROWDED, MERGED_SIZE, THIN_WIDTH,
+    CROWDED_OBJECTS, MAX_SPREAD_INTO_MESHES, MAX_SPREAD_TO_LIGHTS, MAX_SPREAD_WHEN_CROWDED,
+    MERGED_SIZE, MIN_NOTED_DISTANCE, THIN_WIDTH,
 };
 use super::walk::Stack;
 use crate::plan::PackedMesh;
@@ -214,7 +214,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
     fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, distance: L) {
         let width = ball.width;
         // Whether a ray hits what is inside does not matter: it passes closely enough.
-        let distance = distance.max(width * width.like_f64(LEAST_NOTED_DISTANCE));
+        let distance = distance.max(width * width.like_f64(MIN_NOTED_DISTANCE));
         let near = distance_in_pixels(counts, distance, width);
         self.best = self.best.min(near);
     }

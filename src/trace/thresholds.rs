@@ -70,7 +70,7 @@ pub const FARTHEST_CORNER: f64 = 0.75;
 /// Least distance in pixels that rays note for what is treated as one thing, even if they go through it: it is
 /// searched for in pixels and their halves, not in smaller cells. This lies between the distances that count as near
 /// in halves and in quarters; if it were equal to one of them, rounding would decide.
-pub const LEAST_NOTED_DISTANCE: f64 = 0.4 * FARTHEST_CORNER;
+pub const MIN_NOTED_DISTANCE: f64 = 0.4 * FARTHEST_CORNER;
 /// How much something even may deviate, as a share of the range of the corners' colours: the middle of a cell from
 /// the mean of its corners, which an edge between two colours puts at least a quarter away; and colours of one face
 /// from each other.

@@ -28,7 +28,7 @@ pub const MAX_FACTOR: f64 = 100.0;
 /// Seconds for which a new speed is shown.
 const SPEED_SHOWN_SECONDS: f64 = 1.2;
 /// Longest frame that counts, in seconds: after a stall the camera does not leap.
-const LONGEST_FRAME: f64 = 0.1;
+const MAX_FRAME_SECONDS: f64 = 0.1;
 /// Seconds for which the control key must be held alone before it flies down: it also begins shortcuts.
 const CTRL_DELAY: f64 = 0.4;
 /// Seconds without the wheel after which its next turn is an undo step of its own.
@@ -124,7 +124,7 @@ impl Flying {
                 1.0
             };
             let speed = speed(scene) * fast * factor;
-            let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_FRAME);
+            let seconds = f64::from(ui.input(|input| input.stable_dt)).min(MAX_FRAME_SECONDS);
             motion = held.times(speed * seconds, TURN_SPEED * seconds);
             motion.zoom = held.forward * ZOOM_SPEED * fast * seconds;
         }

@@ -15,7 +15,7 @@ use crate::files::make_folder;
 use crate::words::shortened;
 
 /// Characters of a path that a message has room for.
-const LONGEST_PATH: usize = 200;
+const MAX_PATH: usize = 200;
 
 /// The answer of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -274,7 +274,7 @@ impl PathPrompt {
             return warning(words, true);
         }
         if !self.ask.writes() && !takes_folder && !path.is_file() {
-            let path = shortened(&path.to_string_lossy(), LONGEST_PATH);
+            let path = shortened(&path.to_string_lossy(), MAX_PATH);
             return impossible(format!("There is no file {path}"));
         }
         None

@@ -6,7 +6,7 @@ use glam::DVec3;
 use indexmap::IndexMap;
 
 use crate::editor::{Edit, ItemKind, Selection};
-use crate::lab::meet;
+use crate::lab::intersect_shape;
 use crate::scene::{Scene, Shape, around};
 
 /// Number of vertical lines along each side of a thing that probe what is below it.
@@ -175,7 +175,7 @@ fn ground_below(scene: &Scene, body: &[usize], line: &VerticalLine) -> Option<f6
 /// Returns the height at which a shape is met below `from`; `None` if that is inside a ball.
 fn surface_below(shape: &Shape, from: DVec3) -> Option<f64> {
     let from = from + DVec3::Y * start_offset(from);
-    let (t, normal) = meet(shape, from, DVec3::NEG_Y)?;
+    let (t, normal) = intersect_shape(shape, from, DVec3::NEG_Y)?;
     let is_inside = matches!(shape, Shape::Sphere(_)) && normal.y < 0.0;
     (!is_inside).then_some(from.y - t)
 }
@@ -183,7 +183,7 @@ fn surface_below(shape: &Shape, from: DVec3) -> Option<f64> {
 /// Returns the height at which a shape is met above `from`.
 fn surface_above(shape: &Shape, from: DVec3) -> Option<f64> {
     let from = from - DVec3::Y * start_offset(from);
-    Some(from.y + meet(shape, from, DVec3::Y)?.0)
+    Some(from.y + intersect_shape(shape, from, DVec3::Y)?.0)
 }
 
 fn start_offset(from: DVec3) -> f64 {

@@ -7,6 +7,7 @@ use egui::Context;
 use serde::Serialize;
 
 use crate::machine::resident_bytes;
+use crate::words::milliseconds;
 
 /// The cost of a start.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -47,7 +48,7 @@ impl StartWatch {
     /// first one with a picture, which is on the screen by then.
     pub fn tick(&mut self, ctx: &Context, has_picture: bool) -> bool {
         ctx.request_repaint();
-        let ms = self.since.elapsed().as_secs_f64() * 1e3;
+        let ms = milliseconds(self.since.elapsed());
         let Some(had_picture) = self.had_picture.replace(has_picture) else {
             // The first frame is still being made; the next one knows when it was drawn.
             return false;

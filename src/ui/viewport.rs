@@ -12,7 +12,7 @@ use super::upload::{changed_parts, part_to_color_image, to_color_image};
 use crate::image::Image;
 use crate::plan::Region;
 use crate::scene::{Sampling, Scene};
-use crate::words::counted;
+use crate::words::{counted, milliseconds};
 use crate::worker::Frame;
 
 /// Enlarged picture pixels are sharp squares; a reduced picture is averaged instead of skipping pixels.
@@ -222,7 +222,7 @@ pub fn describe(frame: &Frame, scene: &Scene) -> String {
     let objects = counted(scene.objects.len(), "object");
     format!(
         "{size}{edges} · {:.1} ms · {per_pixel:.1} rays/px · {} · {bounces} · {objects}",
-        frame.cost.time.as_secs_f64() * 1e3,
+        milliseconds(frame.cost.time),
         frame.cost.lanes,
     )
 }

@@ -23,7 +23,7 @@ fn meet_sphere<R: Real>(method: SphereMethod, ray: &Ray<R>, sphere: &PackedSpher
         sphere: method,
         ..Methods::default()
     };
-    sphere.meet(ray, &methods)
+    sphere.intersect_single(ray, &methods)
 }
 
 /// A row: its name, and its check, which takes the number of tries per case.

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis};
+use super::map::{Map, Tries, offset_axis, placed, scale_axis};
 use super::stage::light;
 use super::subject::MapSubject;
 use crate::plan::RenderRequest;
@@ -42,7 +42,7 @@ fn levels(scene: &Scene) -> Vec<[f32; 3]> {
 /// Red surfaces, and if `with_later`, green ones in the same places; scaled by `scale`, and `away` sizes from the
 /// origin.
 fn scene(away: f64, scale: f64, with_later: bool) -> Scene {
-    let to_world = |v: DVec3| (v + OFFSET_DIRECTION * away) * scale;
+    let to_world = |v: DVec3| placed(v, away, scale);
     let mut scene = Scene::empty();
     (scene.background, scene.ambient_intensity) = (DVec3::ZERO, 1.0);
     scene.lights = List::default();

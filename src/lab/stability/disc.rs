@@ -57,7 +57,7 @@ fn fails(number: u64, distance: f64, scale: f64) -> Option<bool> {
         direction: Vec3::from_dvec3(target.try_normalize()?),
     };
     (cosine > 0.2).then(|| {
-        let t: f32 = disc.meet(&ray, &Methods::default());
+        let t: f32 = disc.intersect_single(&ray, &Methods::default());
         t.is_finite() != is_hit
     })
 }

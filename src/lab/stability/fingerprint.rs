@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::map::{Axis, Map, Tries, scattered};
 use super::subject::MapSubject;
-use crate::animate::{CameraPath, shot};
+use crate::animate::shot_of_frame;
 use crate::export::fingerprint;
 use crate::image::{Format, Image, render};
 use crate::plan::RenderRequest;
@@ -48,7 +48,10 @@ fn changed(number: u64, distance: f64) -> Vec<bool> {
     let step = DVec3::new(random(0), random(1), random(2)).normalize_or(DVec3::X) * distance;
     let (before, after) = (flight(DVec3::ZERO), flight(step));
     let frames = FRAMES.iter().filter_map(|frame| {
-        let (one, other) = (frame_of(&before, *frame), frame_of(&after, *frame));
+        let (one, other) = (
+            shot_of_frame(&before, *frame),
+            shot_of_frame(&after, *frame),
+        );
         let is_changed = picture(&one) != picture(&other);
         let fingerprint_of = |scene| fingerprint(scene, Format::Png).ok();
         is_changed.then(|| fingerprint_of(&one) == fingerprint_of(&other))
@@ -81,11 +84,6 @@ fn flight(step: DVec3) -> Arc<Scene> {
         }),
         ..scene
     })
-}
-
-fn frame_of(scene: &Arc<Scene>, frame: u64) -> Arc<Scene> {
-    let path = CameraPath::new(&scene.animation.keys);
-    shot(scene, &path, scene.animation.time_of(frame))
 }
 
 fn picture(scene: &Scene) -> Option<Image> {

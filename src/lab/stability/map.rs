@@ -15,7 +15,12 @@ const SCALES: [f64; 12] = [
 const OFFSETS: [f64; 8] = [0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6];
 
 /// The unit direction in which scenes are moved away from the origin; it is parallel to no axis.
-pub const OFFSET_DIRECTION: DVec3 = DVec3::new(0.6, -0.64, 0.48);
+const OFFSET_DIRECTION: DVec3 = DVec3::new(0.6, -0.64, 0.48);
+
+/// A point of a scene of size one that is moved away from the origin, `away` times its size, and scaled.
+pub fn placed(point: DVec3, away: f64, scale: f64) -> DVec3 {
+    (point + OFFSET_DIRECTION * away) * scale
+}
 
 /// An axis of a map.
 #[derive(Clone, Debug, PartialEq)]

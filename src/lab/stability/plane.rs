@@ -42,7 +42,7 @@ fn fails(number: u64, angle: f64, scale: f64) -> Option<bool> {
         origin: Vec3::<f32>::from_dvec3(tangent * (scale * (scattered(number, 7) * 2.0 - 1.0))),
         direction: Vec3::from_dvec3(direction),
     };
-    let found = f64::from(plane.meet(&ray, &Methods::default()));
+    let found = f64::from(plane.intersect_single(&ray, &Methods::default()));
     let (n, o, d) = (
         plane.normal.to_dvec3(),
         ray.origin.to_dvec3(),

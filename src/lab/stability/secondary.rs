@@ -1,7 +1,7 @@
 //! Shadow rays that hit the surface that they start on, or miss what is close to it: pictures of a ball and a card on
 //! a floor, at every scale and place. The ball is a sphere or a mesh.
 
-use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis};
+use super::map::{Map, Tries, offset_axis, placed, scale_axis};
 use super::stage::light;
 use super::subject::MapSubject;
 use crate::plan::{Model, RenderRequest};
@@ -139,7 +139,7 @@ fn is_inner(lit: &[bool], index: usize) -> bool {
 
 /// A floor, a ball on it, a thin card beside it, and one light; scaled by `scale`, and `away` sizes from the origin.
 fn scene(ball: BallKind, away: f64, scale: f64) -> Scene {
-    let point = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z) + OFFSET_DIRECTION * away) * scale;
+    let point = |x: f64, y: f64, z: f64| placed(DVec3::new(x, y, z), away, scale);
     let mut scene = Scene::empty();
     let white = DVec3::splat(255.0);
     let black = DVec3::splat(0.0);

@@ -41,10 +41,10 @@ fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
     };
     let is_hit = number.is_multiple_of(2);
     let offset_in_radii = if is_hit {
-        0.9
+        0.9 * scattered(number, 4)
     } else {
         1.1 + scattered(number, 3)
-    } * if is_hit { scattered(number, 4) } else { 1.0 };
+    };
     let center = (towards * distance + perpendicular * offset_in_radii) * scale;
     let sphere = PackedSphere {
         center: Vec3::<f32>::from_dvec3(center),
@@ -59,6 +59,6 @@ fn fails(method: SphereMethod, number: u64, distance: f64, scale: f64) -> bool {
         sphere: method,
         ..Methods::default()
     };
-    let t: f32 = sphere.meet(&ray, &methods);
+    let t: f32 = sphere.intersect_single(&ray, &methods);
     t.is_finite() != is_hit
 }

@@ -1,7 +1,7 @@
 //! Traces the small pictures that some maps are measured on.
 
-use super::super::measure::trace_light;
 use crate::image::LinearRgb;
+use crate::lab::measure::trace_light;
 use crate::plan::RenderRequest;
 use crate::scene::Scene;
 use crate::trace::{RenderControl, Tracer};

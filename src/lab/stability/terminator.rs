@@ -128,7 +128,8 @@ fn fails(ball: &PackedMesh<f32>, number: u64, height: f64, is_lifted: bool) -> O
         .iter()
         .enumerate()
         .filter(|&(index, _)| index != face_index);
-    let mut hits = others.map(|(_, other)| -> f32 { other.meet(&ray, &Methods::default()) });
+    let mut hits =
+        others.map(|(_, other)| -> f32 { other.intersect_single(&ray, &Methods::default()) });
     Some(hits.any(f32::is_finite))
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::map::{Map, OFFSET_DIRECTION, Tries, offset_axis, scale_axis, scattered};
+use super::map::{Map, Tries, offset_axis, placed, scale_axis, scattered};
 use super::subject::MapSubject;
 use crate::primitive::{Culling, PackedTriangle, Primitive as _, Ray, Slicing, Tip};
 use crate::scene::{Methods, TriangleMethod};
@@ -23,9 +23,11 @@ pub fn maps(effort: u32) -> Vec<Map> {
         ),
         (offset_axis(), scale_axis()),
         |method, away, scale| {
-            let mesh: Vec<PackedTriangle<f32>> =
-                ball.iter().map(|&face| placed(face, away, scale)).collect();
-            let origin = Vec3::<f32>::from_dvec3((INSIDE + OFFSET_DIRECTION * away) * scale);
+            let mesh: Vec<PackedTriangle<f32>> = ball
+                .iter()
+                .map(|&face| placed_triangle(face, away, scale))
+                .collect();
+            let origin = Vec3::<f32>::from_dvec3(placed(INSIDE, away, scale));
             let tries = 0..TRIES * u64::from(effort);
             Tries::count(tries.filter_map(|n| leaks(method, &mesh, origin, n)))
         },
@@ -55,13 +57,12 @@ fn leaks(
         triangle: method,
         ..Methods::default()
     };
-    let is_hit = |face: &PackedTriangle<f32>| face.meet(&ray, &methods).is_finite();
+    let is_hit = |face: &PackedTriangle<f32>| face.intersect_single(&ray, &methods).is_finite();
     Some(!mesh.iter().any(is_hit))
 }
 
-fn placed(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
-    let to_world =
-        |corner: DVec3| Vec3::<f32>::from_dvec3((corner + OFFSET_DIRECTION * away) * scale);
+fn placed_triangle(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle<f32> {
+    let to_world = |corner: DVec3| Vec3::<f32>::from_dvec3(placed(corner, away, scale));
     let [a, b, c] = corners.map(to_world);
     let normal = (c - a).to_dvec3().cross((b - a).to_dvec3());
     PackedTriangle {

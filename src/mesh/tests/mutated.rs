@@ -110,6 +110,13 @@ proptest! {
             apply(&mut bytes, damage);
         }
         sample.beside("m.mtl", bytes);
-        prop_assert_eq!(sample.parts().len(), 1);
+        let parts = sample.parts();
+        prop_assert_eq!(parts.len(), 1);
+        if let Some(colors) = &parts[0].colors {
+            let channels = colors.specular.iter().flatten().chain(&colors.diffuse);
+            prop_assert!(channels.into_iter().all(|channel| (0.0..=1.0).contains(channel)));
+            let exponent = colors.exponent.unwrap_or(0.0);
+            prop_assert!(exponent.is_finite() && exponent >= 0.0);
+        }
     }
 }

@@ -2,12 +2,12 @@ use super::*;
 use crate::scene::Method as _;
 use proptest::prelude::*;
 
-fn met(triangle: TriangleMethod, ray: &Ray<f32>, target: &PackedTriangle<f32>) -> f32 {
+fn intersect(triangle: TriangleMethod, ray: &Ray<f32>, target: &PackedTriangle<f32>) -> f32 {
     let methods = Methods {
         triangle,
         ..Methods::default()
     };
-    target.meet(ray, &methods)
+    target.intersect_single(ray, &methods)
 }
 
 fn triangle(a: Vec3<f32>, b: Vec3<f32>, c: Vec3<f32>) -> PackedTriangle<f32> {
@@ -77,7 +77,7 @@ fn leaks(
                 origin,
                 direction: Vec3::from_dvec3(target),
             };
-            !mesh.iter().any(|t| met(method, &ray, t).is_finite())
+            !mesh.iter().any(|t| intersect(method, &ray, t).is_finite())
         })
         .count()
 }
@@ -140,7 +140,7 @@ fn edge_on_and_behind_are_misses() {
     ] {
         let ray = Ray { origin, direction };
         for method in TriangleMethod::ALL.iter().map(|method| method.value) {
-            assert_eq!(met(method, &ray, &t), f32::INFINITY);
+            assert_eq!(intersect(method, &ray, &t), f32::INFINITY);
         }
     }
 }
@@ -185,10 +185,10 @@ proptest! {
         let ray = Ray { origin, direction: Vec3::from_dvec3(direction.expect("assumed")) };
         let exact = (target - origin).length();
         for method in TriangleMethod::ALL {
-            let found = met(method.value, &ray, &t);
+            let found = intersect(method.value, &ray, &t);
             prop_assert!((found - exact).abs() < 1e-4 * (1.0 + exact), "{}: {found} {exact}", method.id);
         }
-        let new = met(TriangleMethod::Watertight, &ray, &t);
+        let new = intersect(TriangleMethod::Watertight, &ray, &t);
         let on_plane = (t.refine(&ray, new).point - a).dot(t.normal).abs();
         prop_assert!(on_plane < 2e-6);
     }

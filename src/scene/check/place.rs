@@ -191,12 +191,12 @@ impl<'a> At<'a> {
 }
 
 /// Largest number of names that a sentence lists.
-const MOST_NAMES: usize = 8;
+const MAX_NAMES: usize = 8;
 
 /// Returns the message that nothing of a kind has this name, with the names that exist.
 pub fn no_such<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let mut known = known.map(|name| format!("{name:?}"));
-    let first: Vec<String> = known.by_ref().take(MOST_NAMES).collect();
+    let first: Vec<String> = known.by_ref().take(MAX_NAMES).collect();
     if first.is_empty() {
         return format!("there is no {kind} named {name:?}: the scene has none");
     }

@@ -14,12 +14,12 @@ pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 /// Numbers of at least this size, or smaller than its reciprocal, are written with an exponent.
-const MOST_DIGITS: f64 = 1e17;
+const MAX_DIGITS: f64 = 1e17;
 
 /// Returns the shortest text that parses to `value`, without `.0` on whole numbers.
 pub fn format_number(value: f64) -> String {
     let size = value.abs();
-    if size >= MOST_DIGITS || (size > 0.0 && size < MOST_DIGITS.recip()) {
+    if size >= MAX_DIGITS || (size > 0.0 && size < MAX_DIGITS.recip()) {
         format!("{value:e}")
     } else {
         format!("{value}")

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Whole numbers below this are written without a decimal point; every one of them is exact in `f64`.
-const LARGEST_PLAIN: f64 = 1e15;
+const MAX_PLAIN: f64 = 1e15;
 
 /// Writes `value`.
 #[expect(
@@ -11,7 +11,7 @@ const LARGEST_PLAIN: f64 = 1e15;
     reason = "serde asks with a reference"
 )]
 pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    let is_plain = value.fract() == 0.0 && value.abs() < LARGEST_PLAIN;
+    let is_plain = value.fract() == 0.0 && value.abs() < MAX_PLAIN;
     if is_plain && (*value != 0.0 || value.is_sign_positive()) {
         serializer.serialize_i64(*value as i64)
     } else {

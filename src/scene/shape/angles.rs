@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3, EulerRot};
 /// in a gimbal lock, where two of the three angles turn about one axis and it is ambiguous which of them has changed.
 const MAX_STEP: f64 = 90.0;
 /// Largest number of such steps: for larger rotations, the number of full turns is not meaningful.
-const MOST_STEPS: f64 = 4000.0;
+const MAX_STEPS: f64 = 4000.0;
 
 /// Returns the rotation by these angles in degrees about x, then y, then z.
 pub fn orientation_of(angles: DVec3) -> DQuat {
@@ -34,7 +34,7 @@ pub fn angles_of(orientation: DQuat, previous: DVec3) -> DVec3 {
 
 /// Returns the angles after a further rotation, in degrees about a unit axis, including its full turns.
 pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
-    let steps = (degrees.abs() / MAX_STEP).ceil().clamp(1.0, MOST_STEPS) as u32;
+    let steps = (degrees.abs() / MAX_STEP).ceil().clamp(1.0, MAX_STEPS) as u32;
     let start = orientation_of(angles);
     (1..=steps).fold(angles, |previous, step| {
         let degrees = degrees * f64::from(step) / f64::from(steps);

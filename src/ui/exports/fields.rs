@@ -88,7 +88,7 @@ fn video_word(video: Option<Video>) -> &'static str {
 #[expect(
     clippy::ref_option,
     clippy::trivially_copy_pass_by_ref,
-    reason = "so it is called"
+    reason = "serde passes a reference to the field"
 )]
 fn write_video<S: Serializer>(video: &Option<Video>, to: S) -> Result<S::Ok, S::Error> {
     video_word(*video).serialize(to)

@@ -74,14 +74,11 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     } else if new_pace != pace || only.is_none() && changed.is_some() {
         // With several keys, each keeps the part that was not changed.
         let (interpolation, easing) = new_pace;
-        let (changed, label) = if changed == Some("easing") {
-            let changed = animation.with_pace(places, |(_, each)| *each = easing);
-            (changed, "Key: easing")
+        out.edit(if changed == Some("easing") {
+            Edit::key_easing(animation, places, easing)
         } else {
-            let changed = animation.with_pace(places, |(each, _)| *each = interpolation);
-            (changed, "Key: interpolation")
-        };
-        out.edit(Edit::animation(changed, label));
+            Edit::key_interpolation(animation, places, interpolation)
+        });
     }
 }
 

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::super::requests::UiRequests;
-use super::super::rows::FieldRows;
 use crate::editor::{Edit, Editor};
 use crate::lab::{Choice, EIGHT_BIT_FLOOR, Goal};
 use crate::scene::{Render, Scene};
+use crate::ui::requests::UiRequests;
+use crate::ui::rows::FieldRows;
 use crate::worker::Question;
 
 /// The goals on offer, with their labels.

@@ -2,13 +2,13 @@
 
 use egui::{Align2, FontId, Painter, Rect, TextStyle, Theme, Ui, pos2, vec2};
 
-use super::super::raster::draw;
-use super::super::theme::{GRID, palette};
 use super::heat;
 use super::ramp;
 use super::rates;
 use crate::image::Image;
 use crate::lab::stability::{Axis, Map};
+use crate::ui::raster::draw;
+use crate::ui::theme::{GRID, palette};
 use crate::words::capitalised;
 
 /// Width of the figure in points.

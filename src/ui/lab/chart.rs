@@ -7,11 +7,11 @@ use egui_plot::{
     AxisHints, HPlacement, HoverPosition, Plot, PlotPoint, PlotPoints, PlotTransform, Points,
 };
 
-use super::super::theme::{GRID, palette};
 use super::axes::{MAX_DECADES, decades, decibels, plain, power_of_ten, powers};
 use super::labels::{place_level_name, place_names};
 use super::marks;
 use crate::lab::{Family, front};
+use crate::ui::theme::{GRID, palette};
 
 /// Spacing of axis labels in points, on small charts side by side, over which the labels fade in.
 const COMPACT_LABEL_SPACING: Rangef = Rangef {

@@ -2,9 +2,9 @@
 
 use egui::{Response, Sense, TextureHandle, TextureOptions, Ui};
 
-use super::super::upload::{paint, to_color_image};
-use super::super::viewport::Place;
 use crate::image::Image;
+use crate::ui::upload::{paint, to_color_image};
+use crate::ui::viewport::Place;
 
 /// What is shown of a dot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,6 @@
 
 use egui::{Button, RichText, Ui};
 
-use super::super::requests::UiRequests;
-use super::super::theme::GRID;
 use super::comparison::COMPARISON_MODES;
 use super::dots::figures;
 use super::panel::{DETAILS_WIDTH, Lab};
@@ -12,6 +10,8 @@ use crate::lab::{Candidate, Family, account};
 use crate::plan::Model;
 use crate::scene::Render;
 use crate::ui::hint::Hinted as _;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::GRID;
 
 /// Whether the scene can adopt the settings of a candidate, with the label of the button and its hint.
 fn adoption(candidate: &Candidate, is_used: bool) -> (bool, &'static str, &'static str) {

@@ -4,11 +4,11 @@ use egui::{Align2, RichText, Ui};
 use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, Points, Text};
 use indexmap::IndexMap;
 
-use super::super::theme::{GRID, palette};
 use super::axes::{GRID_FADE, decades, plain};
 use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{Cost, Crowd, Growth, PictureLook, RenderMethod};
+use crate::ui::theme::{GRID, palette};
 
 /// Distance of a line's name above or below its end, in decades.
 const NAME_OFFSET: f64 = 0.06;

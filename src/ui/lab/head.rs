@@ -2,15 +2,15 @@
 
 use egui::{Button, DragValue, Id, Label, RichText, Ui};
 
-use super::super::commands::Command;
-use super::super::menu_entry::on_click;
-use super::super::requests::UiRequests;
-use super::super::theme::palette;
 use super::dots::{CostAxis, ErrorAxis};
 use super::panel::{Lab, LabRequest, Tab};
 use crate::editor::Editor;
 use crate::lab::{cheapest_within, closest_within, costs_of_choices};
+use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
+use crate::ui::menu_entry::on_click;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::palette;
 
 /// A value to choose, with its label and hint.
 type Choice<T> = (T, &'static str, &'static str);

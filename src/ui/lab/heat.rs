@@ -2,9 +2,9 @@
 
 use egui::{Align2, Color32, FontId, Painter, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use super::super::theme::palette;
 use super::ramp;
 use crate::lab::stability::{Axis, Map, number};
+use crate::ui::theme::palette;
 
 /// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (40.0, 30.0);

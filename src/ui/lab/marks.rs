@@ -2,8 +2,8 @@
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, Vec2, vec2};
 
-use super::super::theme::{GRID, palette};
 use crate::lab::Family;
+use crate::ui::theme::{GRID, palette};
 
 /// Half the size of a marker, in points.
 pub const RADIUS: f32 = 4.5;

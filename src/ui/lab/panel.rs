@@ -7,9 +7,6 @@ use std::time::Duration;
 use egui::{Align, Key, Layout, Response, ScrollArea, Ui};
 use glam::DVec3;
 
-use super::super::requests::UiRequests;
-use super::super::theme::{GRID, ROW};
-use super::super::viewport::Place;
 use super::chart::Chart;
 use super::comparison::{Comparison, ComparisonMode};
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
@@ -20,6 +17,9 @@ use crate::machine::processor;
 use crate::scene::{Light, LightObj, List, Object, Render, Scene, Shape};
 use crate::trace::Threads;
 use crate::ui::prompts::primary_button;
+use crate::ui::requests::UiRequests;
+use crate::ui::theme::{GRID, ROW};
+use crate::ui::viewport::Place;
 use crate::words::counted;
 use crate::worker::Background;
 

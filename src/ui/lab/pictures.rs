@@ -2,13 +2,13 @@
 
 use egui::{Theme, Ui, vec2};
 
-use super::super::raster::{SCALE, draw};
-use super::super::theme::GRID;
 use super::chart::Chart;
 use super::dots::{ChartView, CostAxis, ErrorAxis, chart};
 use super::marks;
 use crate::image::Image;
 use crate::lab::{PictureLook, Study};
+use crate::ui::raster::{SCALE, draw};
+use crate::ui::theme::GRID;
 
 /// Renders a chart that fills the whole picture.
 pub fn picture(look: PictureLook, mut show: impl FnMut(&mut Ui)) -> Image {

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Theme, Ui, pos2, vec2};
 
-use super::super::theme::palette;
+use crate::ui::theme::palette;
 
 /// The lowest rate that is distinguished from rarer ones; the scale from here to 1 is logarithmic.
 pub const LOWEST_RATE: f64 = 1e-5;

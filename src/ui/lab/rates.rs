@@ -2,10 +2,10 @@
 
 use egui::{Align2, FontId, Rect, Stroke, TextStyle, Ui, pos2};
 
-use super::super::theme::{GRID, palette};
 use super::heat::{middle_of_column, number_columns};
 use super::ramp;
 use crate::lab::stability::{Map, Tries};
+use crate::ui::theme::{GRID, palette};
 
 /// Space for the numbers at the left and below.
 const MARGIN: (f32, f32) = (34.0, 30.0);

@@ -3,11 +3,11 @@
 use egui::Ui;
 use egui_plot::{Corner, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, Points};
 
-use super::super::theme::{GRID, palette};
 use super::axes::{GRID_FADE, plain};
 use super::pictures::picture;
 use crate::image::Image;
 use crate::lab::{PictureLook, SharedPicture};
+use crate::ui::theme::{GRID, palette};
 
 /// The number of workers that the heading reports on.
 const REPORTED_WORKERS: usize = 64;

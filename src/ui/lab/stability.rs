@@ -2,11 +2,11 @@
 
 use egui::{Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
 
-use super::super::theme::{GRID, ROW, palette};
 use super::{heat, ramp};
 use crate::lab::stability::{Map, maps};
 use crate::scene::{Precision, Scene};
 use crate::ui::hint::Hinted as _;
+use crate::ui::theme::{GRID, ROW, palette};
 use crate::worker::Background;
 
 /// Number of tries as a multiple of those for a quick look; computing them takes a second.

@@ -20,15 +20,13 @@ pub fn menu(ui: &mut Ui, place: KeyId, editor: &Editor, out: &mut UiRequests) {
             .radio(current_interpolation == interpolation, interpolation.name())
             .clicked()
         {
-            let changed = animation.with_pace(places, |(each, _)| *each = interpolation);
-            out.edit(Edit::animation(changed, "Key: interpolation"));
+            out.edit(Edit::key_interpolation(animation, places, interpolation));
         }
     }
     ui.separator();
     for easing in Easing::ALL {
         if ui.radio(current_easing == easing, easing.name()).clicked() {
-            let changed = animation.with_pace(places, |(_, each)| *each = easing);
-            out.edit(Edit::animation(changed, "Key: easing"));
+            out.edit(Edit::key_easing(animation, places, easing));
         }
     }
     ui.separator();

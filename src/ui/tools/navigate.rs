@@ -231,14 +231,14 @@ mod tests {
     }
 
     #[test]
-    fn views_along_axes_have_a_basis() {
+    fn a_view_along_an_axis_looks_at_the_middle() {
         let camera = Camera::default();
+        let middle = DVec3::new(3.0, -5.0, 7.0);
         for direction in [DVec3::NEG_Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Y] {
-            assert!(
-                looking_along(&camera, DVec3::ZERO, direction)
-                    .basis()
-                    .is_some()
-            );
+            let seen = looking_along(&camera, middle, direction);
+            assert_eq!(seen.basis().expect("a basis").z_axis, -direction);
+            let towards = (middle - seen.position).normalize();
+            assert!(towards.abs_diff_eq(direction, 1e-12), "{towards}");
         }
     }
 }
