@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
-use std::path::{Component, Path, PathBuf};
+use std::path::{Component, Path, PathBuf, is_separator};
 use std::time::SystemTime;
 
 use tempfile::NamedTempFile;
@@ -108,10 +108,13 @@ impl NewFile {
             if !existing.is_file() {
                 return refused("something with this name exists and is not a file");
             }
-            // Renaming over a read-only file would work: that needs permission for its folder only.
+            // Renaming over a file that may not be written would work: that needs permission for its folder only.
             if existing.permissions().readonly() {
                 return refused("the file is read-only");
             }
+            fs::OpenOptions::new().append(true).open(&target)?;
+        } else if path.to_string_lossy().ends_with(is_separator) {
+            return Err(io::Error::other("this is the name of a folder"));
         }
         let folder = match target.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,

@@ -34,8 +34,19 @@ struct Segment {
 impl ArcLengthSpline {
     /// Creates a curve through `points`, of which there must be at least one.
     pub fn new(points: &[DVec3], closing: Closing) -> Self {
+        Self::through(points, closing, false)
+    }
+
+    /// Creates an open curve through `points`, of which there must be at least one. It may turn sharply at equal
+    /// consecutive points, where it approaches and leaves as at an end: what falls and rests does not sink.
+    pub fn with_rests(points: &[DVec3]) -> Self {
+        Self::through(points, Closing::Open, true)
+    }
+
+    fn through(points: &[DVec3], closing: Closing, turns_at_rests: bool) -> Self {
         let mut stops: Vec<DVec3> = Vec::new();
         let mut stop_indices = Vec::new();
+        let mut is_corner = Vec::new();
         for &point in points {
             // A distance whose square underflows counts as zero.
             if stops
@@ -43,6 +54,9 @@ impl ArcLengthSpline {
                 .is_none_or(|last| (point - *last).length() > 0.0)
             {
                 stops.push(point);
+                is_corner.push(false);
+            } else if let Some(is_corner) = is_corner.last_mut() {
+                *is_corner = turns_at_rests;
             }
             stop_indices.push(stops.len() - 1);
         }
@@ -54,11 +68,11 @@ impl ArcLengthSpline {
             let (from, to) = (stops[i], stops[i + 1]);
             let before = match i {
                 0 if is_closed => stops[last - 1],
-                0 => from * 2.0 - to,
+                _ if i == 0 || is_corner[i] => from * 2.0 - to,
                 _ => stops[i - 1],
             };
             let after = match i + 2 {
-                next if next <= last => stops[next],
+                next if next <= last && !is_corner[i + 1] => stops[next],
                 _ if is_closed => stops[1],
                 _ => to * 2.0 - from,
             };

@@ -43,7 +43,14 @@ impl CameraPath {
     /// Creates the path through `keys`, which are in order of time.
     pub fn new(keys: &[Key<Camera>]) -> Self {
         let cameras = keys.iter().map(|key| &key.value);
-        let angles = unwound(cameras.clone().map(Orientation::of));
+        let turns = keys.windows(2).map(|pair| match pair[0].interpolation {
+            Interpolation::Orbit { around } => {
+                orbit_turn(around, pair[0].value.position, pair[1].value.position)
+            }
+            _ => 0.0,
+        });
+        let turns = std::iter::once(0.0).chain(turns);
+        let angles = unwound(cameras.clone().map(Orientation::of).zip(turns));
         let numbers = cameras.zip(angles).map(|(camera, angles)| {
             let (zoom, height) = (camera.projection_distance, camera.orthographic_height);
             let Orientation { yaw, pitch, roll } = angles;
@@ -171,19 +178,36 @@ fn eased(easing: Easing, along: f64) -> f64 {
 /// change uniformly, the angle in the shorter direction. From and to a point on the axis, the path is straight.
 pub(super) fn orbit(around: DVec3, from: DVec3, to: DVec3, along: f64) -> DVec3 {
     let (start, end) = (from - around, to - around);
-    let angle = |v: DVec3| v.z.atan2(v.x);
     let (near, far) = (start.x.hypot(start.z), end.x.hypot(end.z));
-    // The angle of a point on the axis is only rounding noise.
-    let is_on_axis = near.min(far) <= ON_AXIS * near.max(far);
-    let (first, turn) = if is_on_axis {
-        (angle(if near < far { end } else { start }), 0.0)
+    let first = angle_about_axis(if near < far && is_on_axis(near, far) {
+        end
     } else {
-        (angle(start), shorter_turn(angle(end) - angle(start)))
-    };
+        start
+    });
+    let turn = orbit_turn(around, from, to);
     let radius = near + (far - near) * along;
     let (sine, cosine) = (first + turn * along).sin_cos();
     let height = start.y + (end.y - start.y) * along;
     around + DVec3::new(radius * cosine, height, radius * sine)
+}
+
+/// Returns the angle by which [`orbit`] turns from one point to the other, at most half a turn.
+fn orbit_turn(around: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let (start, end) = (from - around, to - around);
+    if is_on_axis(start.x.hypot(start.z), end.x.hypot(end.z)) {
+        return 0.0;
+    }
+    shorter_turn(angle_about_axis(end) - angle_about_axis(start))
+}
+
+/// The angle of a point about the vertical axis, from x towards z, as the yaw of cameras counts.
+fn angle_about_axis(point: DVec3) -> f64 {
+    point.z.atan2(point.x)
+}
+
+/// Returns whether one of two distances from the axis is only rounding noise, and so is the angle of its point.
+fn is_on_axis(one: f64, other: f64) -> bool {
+    one.min(other) <= ON_AXIS * one.max(other)
 }
 
 /// Returns the equivalent angle of at most half a turn.
@@ -193,17 +217,29 @@ fn shorter_turn(turn: f64) -> f64 {
     if wound == -PI { PI } else { wound }
 }
 
-/// Adds full turns to each angle, so that it is nearest to the one before.
-pub(super) fn unwound(angles: impl Iterator<Item = Orientation>) -> Vec<Orientation> {
+/// Adds full turns to each angle, so that it is nearest to the one before. Each orientation comes with the angle by
+/// which its position turns about a vertical axis on the way to it: the yaw is nearest to the one before plus that, so
+/// that what looks at the axis goes on looking at it.
+pub(super) fn unwound(angles: impl Iterator<Item = (Orientation, f64)>) -> Vec<Orientation> {
     let mut unwound: Vec<Orientation> = Vec::new();
-    for angles in angles {
+    for (angles, turn) in angles {
         let next = match unwound.last() {
             None => angles,
-            Some(last) => Orientation {
-                yaw: nearest_equivalent(angles.yaw, last.yaw),
-                roll: nearest_equivalent(angles.roll, last.roll),
-                ..angles
-            },
+            Some(last) => {
+                let (direct, turned) = (last.yaw, last.yaw + turn);
+                let yaw = nearest_equivalent(angles.yaw, direct);
+                // What does not turn along with half a turn is as near by rounding alone.
+                let is_other_way = (yaw - turned).abs() > PI + 1e-9;
+                Orientation {
+                    yaw: if is_other_way {
+                        nearest_equivalent(yaw, turned)
+                    } else {
+                        yaw
+                    },
+                    roll: nearest_equivalent(angles.roll, last.roll),
+                    ..angles
+                }
+            }
         };
         unwound.push(next);
     }

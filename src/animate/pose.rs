@@ -61,7 +61,7 @@ fn value_at(keys: &[Key<Value>], time: f64) -> Option<Value> {
             let (run, index) = run_around(keys, i);
             let times = run.iter().map(|key| key.time).collect();
             let points: Vec<DVec3> = run.iter().map(|key| point(key.value)).collect();
-            let route = ArcLengthSpline::new(&points, Closing::Open);
+            let route = ArcLengthSpline::with_rests(&points);
             let pace = Curve::new(times, route.lengths_at_points().to_vec(), Closing::Open);
             let position = route.at(pace.at(index, along));
             position.map_or(from.value, Value::Point)
@@ -227,7 +227,7 @@ mod tests {
                 let expected = Curve::new(times.clone(), values, Closing::Open).at(index, along);
                 prop_assert_eq!(value_at(&numbers, time), Some(Value::Number(expected)));
                 let points: Vec<DVec3> = whole.iter().map(|key| point(key.value)).collect();
-                let route = ArcLengthSpline::new(&points, Closing::Open);
+                let route = ArcLengthSpline::with_rests(&points);
                 let pace = Curve::new(times, route.lengths_at_points().to_vec(), Closing::Open);
                 let expected = route.at(pace.at(index, along)).unwrap_or(points[index]);
                 let Some(Value::Point(found)) = value_at(&keys, time) else {

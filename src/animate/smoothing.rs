@@ -18,7 +18,7 @@ pub(super) fn smoothed(take: &Take, cuts: &BTreeSet<usize>, seconds: f64) -> Vec
         .samples
         .iter()
         .map(|&Sample(_, _, yaw, pitch, roll)| Orientation { yaw, pitch, roll });
-    let angles = unwound(angles);
+    let angles = unwound(angles.map(|angles| (angles, 0.0)));
     let numbers = |(sample, angles): (&Sample, &Orientation)| {
         let [x, y, z] = sample.1.to_array();
         (sample.0, [x, y, z, angles.yaw, angles.pitch, angles.roll])

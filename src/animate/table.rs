@@ -30,7 +30,7 @@ pub fn to_table<'c>(cameras: impl IntoIterator<Item = (f64, &'c Camera)>) -> Str
     let cameras: Vec<_> = cameras.into_iter().collect();
     let angles = cameras.iter().map(|(_, camera)| Orientation::of(camera));
     // Angles are unwound, so that readers can interpolate between lines across full turns.
-    let angles = unwound(angles).into_iter();
+    let angles = unwound(angles.map(|angles| (angles, 0.0))).into_iter();
     for ((time, camera), Orientation { yaw, pitch, roll }) in cameras.into_iter().zip(angles) {
         let [x, y, z] = camera.position.to_array();
         let degrees = [yaw, pitch, roll].map(f64::to_degrees);

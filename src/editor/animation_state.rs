@@ -63,6 +63,8 @@ struct SimplifiedKeys {
     /// The tolerance it was made with, in pixels.
     tolerance: f64,
     keys: Vec<Key<Camera>>,
+    /// Whether they were made during a drag that may go on, which replaces them.
+    is_passing: bool,
 }
 
 impl AnimationState {
@@ -156,13 +158,25 @@ impl AnimationState {
         simplified.filter(move |one| one.take == *take)
     }
 
-    /// Notes that `keys` were made of a recording with this tolerance, in pixels.
+    /// Keeps the keys made so far, whatever a drag makes next.
+    pub fn keep_simplified(&mut self) {
+        for simplified in &mut self.simplified_keys {
+            simplified.is_passing = false;
+        }
+    }
+
+    /// Notes that `keys` were made of a recording with this tolerance, in pixels, instead of those made earlier in the
+    /// same drag.
     pub fn remember_simplified(&mut self, take: Arc<Take>, tolerance: f64, keys: Vec<Key<Camera>>) {
-        self.simplified_keys.retain(|other| other.keys != keys);
+        let is_kept = |one: &SimplifiedKeys| one.keys == keys && !one.is_passing;
+        let is_passing = !self.simplified_keys.iter().any(is_kept);
+        self.simplified_keys
+            .retain(|other| other.keys != keys && !other.is_passing);
         self.simplified_keys.push(SimplifiedKeys {
             take,
             tolerance,
             keys,
+            is_passing,
         });
         let excess = self.simplified_keys.len().saturating_sub(MAX_REMEMBERED);
         self.simplified_keys.drain(..excess);

@@ -26,7 +26,7 @@ use crate::scene::{
 pub struct Editor {
     pub(super) scene: Arc<Scene>,
     revision: u64,
-    pub(super) header: String,
+    pub(super) header: Arc<str>,
     pub(super) path: Option<PathBuf>,
     /// The name of the document while it has no file.
     name: &'static str,
@@ -72,7 +72,7 @@ impl Editor {
             animation_state: AnimationState::new(&scene),
             scene,
             revision: 1,
-            header: document.header,
+            header: document.header.into(),
             path,
             name: "untitled",
             stamp: None,
@@ -321,7 +321,7 @@ impl Editor {
     /// The document as it would be saved; the copy shares what it can with the scene.
     pub fn document(&self) -> Document {
         Document {
-            header: self.header.clone(),
+            header: self.header.to_string(),
             scene: self.scene.without_files(&self.broken),
         }
     }
@@ -389,7 +389,15 @@ impl Editor {
         let lost = removes.then(|| self.lost(&label, &joined, &next)).flatten();
         self.history.record(label, before, &next);
         self.selection = if new.is_empty() {
-            self.followed(&next)
+            let followed = self.selection.followed(&self.scene, &next);
+            // If the only selected item is deleted, the item that follows it at its index is selected.
+            let is_gone = followed.items().is_empty() && self.selection.items().len() == 1;
+            let keeps_index = removes && is_gone;
+            if keeps_index {
+                self.selection.clone()
+            } else {
+                followed
+            }
         } else {
             Selection::all(new)
         };
@@ -410,6 +418,7 @@ impl Editor {
     pub(super) fn snapshot(&self) -> Snapshot {
         Snapshot {
             scene: Arc::clone(&self.scene),
+            header: Arc::clone(&self.header),
             selection: self.selection.clone(),
             view: self.timeline().view_state(),
         }
@@ -418,18 +427,8 @@ impl Editor {
     fn return_to(&mut self, state: Snapshot) {
         let timeline = &mut self.animation_state.timeline;
         timeline.restore_view(state.view, &self.scene, &state.scene);
-        self.selection = state.selection;
+        (self.selection, self.header) = (state.selection, state.header);
         self.set_scene(self.refreshed(&state.scene));
-    }
-
-    /// The selection, with its items at their indices in the next scene.
-    pub(super) fn followed(&self, next: &Scene) -> Selection {
-        let followed = self.selection.followed(&self.scene, next);
-        match (self.selection.items(), followed.items()) {
-            // If the only selected item is gone, the item that follows it at its index is selected.
-            ([_], []) => self.selection.clone(),
-            _ => followed,
-        }
     }
 
     /// Selects those of the items that the scene has.

@@ -177,6 +177,9 @@ impl Editor {
                 let old = Arc::clone(&self.scene);
                 let recorded_span = self.animation_state.recorded_span(&old.animation.keys);
                 let keys = fit_to_span(recorded_span, self.simplified(&take));
+                if !self.is_in_gesture() {
+                    self.animation_state.keep_simplified();
+                }
                 self.animation_state
                     .remember_simplified(take, pixels, keys.clone());
                 let animation = Animation {

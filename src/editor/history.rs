@@ -18,6 +18,8 @@ const MAX_BYTES: usize = 128 << 20;
 pub struct Snapshot {
     /// The scene.
     pub scene: Arc<Scene>,
+    /// The comments before it in the file.
+    pub header: Arc<str>,
     /// What was selected.
     pub selection: Selection,
     /// What was looked at, and at which time.
@@ -172,6 +174,7 @@ mod tests {
     fn snapshot(scene: &Scene) -> Snapshot {
         Snapshot {
             scene: Arc::new(scene.clone()),
+            header: "".into(),
             selection: Selection::default(),
             view: ViewState::default(),
         }

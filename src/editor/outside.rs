@@ -49,7 +49,7 @@ impl Editor {
     pub fn take_theirs(&mut self, (document, stamp): (Document, Stamp)) {
         let before = self.snapshot();
         let theirs = Arc::new(document.scene);
-        self.header = document.header;
+        self.header = document.header.into();
         (self.stamp, self.own_file) = (Some(stamp), OwnFile::Whole);
         self.saved = Arc::clone(&theirs);
         if theirs == self.scene {
@@ -60,7 +60,7 @@ impl Editor {
         self.history.end_gesture(&self.scene);
         self.history.record("Reload".to_owned(), before, &theirs);
         self.history.end_gesture(&theirs);
-        self.selection = self.followed(&theirs);
+        self.selection = self.selection.followed(&self.scene, &theirs);
         self.set_scene(theirs);
         self.notify_of_step(format!(
             "{} was changed by another program and reloaded; undo brings yours back",

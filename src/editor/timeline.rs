@@ -169,6 +169,16 @@ impl Timeline {
         animation.time_of(animation.frame_at(self.playhead))
     }
 
+    /// Seconds of playback until another frame is shown.
+    pub fn time_to_next_frame(&self, animation: &Animation) -> f64 {
+        let shown_for = self.playhead - self.shown_time(animation);
+        if self.is_returning {
+            shown_for / self.speed
+        } else {
+            (1.0 / animation.frames_per_second - shown_for) / self.speed
+        }
+    }
+
     pub(super) fn seek(&mut self, animation: &Animation, seconds: f64) {
         self.playhead = animation.time_of(animation.nearest_frame(seconds));
         self.is_returning = false;

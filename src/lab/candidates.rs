@@ -100,8 +100,18 @@ pub fn candidates(scene: &Scene, width: u32, height: u32) -> Vec<Candidate> {
         ..scene.render.clone()
     };
     if settings != plan.render {
+        let sampled_alike = Render {
+            antialias: plan.render.antialias,
+            ..settings.clone()
+        };
+        let family = match settings.precision == plan.render.precision {
+            true if sampled_alike == plan.render => Family::Sampling,
+            true => Family::Formulas,
+            false => Family::Precision,
+        };
         all.push(Candidate {
             name: OWN_SETTINGS.to_owned(),
+            family,
             render: settings,
             ..plan.clone()
         });

@@ -86,18 +86,25 @@ fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
 /// times count as their slowest run: a way that is faster even then is worth choosing. Excluded are other engines,
 /// smaller pictures, and models that skip less or show other things, which serve for comparison only.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
-    let mut costs = costs_of_dots(study);
-    for (cost, dot) in costs.iter_mut().zip(&study.measurements) {
+    let all = study.certain_costs();
+    let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
+    let can_be_chosen = |index: &usize| {
         let Candidate {
             family,
             model,
             upscale,
             ..
-        } = dot.candidate;
-        if family == Family::Referee || model != Model::Needed || upscale > 1 {
-            *cost = (f64::NAN, f64::NAN);
-        } else if dot.is_doubtful() && !cost.1.is_nan() {
-            cost.0 = dot.times.iter().copied().fold(0.0, f64::max);
+        } = study.measurements[*index].candidate;
+        family != Family::Referee && model == Model::Needed && upscale == 1
+    };
+    for cluster in clusters(study) {
+        let Some(first) = cluster.into_iter().find(can_be_chosen) else {
+            continue;
+        };
+        costs[first] = all[first];
+        let measurement = &study.measurements[first];
+        if measurement.is_doubtful() {
+            costs[first].0 = measurement.times.iter().copied().fold(0.0, f64::max);
         }
     }
     costs

@@ -62,7 +62,8 @@ pub struct Cost {
     pub plan_ms: Option<f64>,
 }
 
-/// Draws a scene with another engine, one sample per pixel; returns the milliseconds that took, or why it failed.
+/// Draws a scene with another engine, one sample per pixel; returns the milliseconds of the fastest of
+/// several runs, or why it failed.
 pub type Engine = fn(&Scene) -> Result<f64, String>;
 
 /// The engine that makes a picture.
@@ -236,9 +237,13 @@ fn time_glint(scene: &Scene, sampling: Sampling) -> (f64, Option<f64>) {
 }
 
 fn povray(scene: &Scene) -> Result<f64, String> {
-    let drawn = by_povray(scene, Threads::current(), &RenderControl::default());
-    let drawn = drawn.map_err(|error| error.to_string())?;
-    Ok(milliseconds(drawn.time))
+    let mut fastest = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let drawn = by_povray(scene, Threads::current(), &RenderControl::default());
+        let drawn = drawn.map_err(|error| error.to_string())?;
+        fastest = fastest.min(milliseconds(drawn.time));
+    }
+    Ok(fastest)
 }
 
 /// A floor, two lights and a camera.

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::candidates::samplings;
-use super::measure::{decibels, difference};
+use super::measure::{decibels, difference, mean};
 use super::pareto_front::{cheapest_within, closest_within};
 use crate::image::LinearRgb;
 use crate::plan::{Planner, RenderRequest};
@@ -12,9 +12,9 @@ use crate::scene::{Method as _, Sampling, Scene};
 use crate::trace::{RenderControl, Tracer};
 use crate::words::milliseconds;
 
-/// Samples along each side of a pixel in the reference for errors: with this number, none of its samples coincides
-/// with one of an even grid.
-const REFERENCE_GRID: u32 = 23;
+/// Samples along each side of a pixel in the two pictures whose mean is the reference for errors: with these numbers,
+/// few of their samples coincide with those of other grids.
+const REFERENCE_GRIDS: [u32; 2] = [23, 19];
 /// Rows per strip.
 const STRIP_ROWS: usize = 8;
 /// Number of pixels, roughly, that are measured: few enough to take a second or so, many enough to cover the content
@@ -57,7 +57,10 @@ impl Choice {
         let goal = match (self.goal, self.is_met) {
             (Goal::Within(error), true) => format!("the cheapest within {}", level(error)),
             (Goal::Within(error), false) => {
-                format!("the most accurate, as none reaches {}", level(error))
+                format!(
+                    "the most accurate, as none measurably reaches {}",
+                    level(error)
+                )
             }
             (Goal::Budget(time), true) => format!("the most accurate within {}", millis(time)),
             (Goal::Budget(time), false) => {
@@ -84,7 +87,11 @@ pub fn choose(
     control: &RenderControl,
 ) -> Option<Choice> {
     let mut strips = Strips::new(scene, request, planner, control);
-    let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRID))?;
+    let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRIDS[0]))?;
+    let (other, _) = strips.trace(Sampling::Grid(REFERENCE_GRIDS[1]))?;
+    // The standard error of the mean of two.
+    let reference_error = difference(&reference, &other).rmse / 2.0;
+    let reference = mean(&reference, &other);
     // Meshes are prepared once, for all samplings, but whoever traces the picture has to wait for that again.
     let planned_with_meshes = first.planned;
     let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();
@@ -105,9 +112,17 @@ pub fn choose(
         // The faster of two runs counts, because disturbances only make a run slower.
         let planned = first.planned.min(second.planned).max(planned_with_meshes);
         let time = planned + first.traced.min(second.traced);
-        measured.push((sampling, (time, difference(&light, &reference).rmse)));
+        let error = error_without(reference_error, difference(&light, &reference).rmse);
+        measured.push((sampling, (time, error)));
     }
     pick(goal, &measured)
+}
+
+/// The error of a sampling, from its difference from a reference that has an error of its own: independent errors add
+/// up as squares. What is below half of the reference's error cannot be told from it.
+fn error_without(reference_error: f64, difference: f64) -> f64 {
+    let own = (difference.powi(2) - reference_error.powi(2)).max(0.0);
+    own.sqrt().max(reference_error / 2.0)
 }
 
 /// Chooses among the measured samplings (time in s, error); `None` if there are none.

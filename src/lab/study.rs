@@ -260,23 +260,25 @@ impl Study {
     /// Times one run of the candidate that has had the fewest, so that all take turns and a temporary disturbance of
     /// the machine affects them all. The other engine goes first, because it disturbs what runs after it.
     fn time_next(&mut self, control: &RenderControl) -> bool {
-        let needs_runs = |dot: &&mut Measurement| dot.times.len() < dot.rounds();
-        let Some(dot) = self
+        let needs_runs = |(_, dot): &(usize, &mut Measurement)| dot.times.len() < dot.rounds();
+        let Some((index, dot)) = self
             .measurements
             .iter_mut()
+            .enumerate()
             .filter(needs_runs)
-            .min_by_key(|dot| (dot.candidate.family != Family::Referee, dot.times.len()))
+            .min_by_key(|(_, dot)| (dot.candidate.family != Family::Referee, dot.times.len()))
         else {
             return false;
         };
         if dot.candidate.family == Family::Referee {
             let scene = dot.candidate.scene(&self.scene);
-            let first = dot.times.first().copied().unwrap_or_default();
             match by_povray(&scene, Threads::current(), control) {
                 Ok(drawn) => dot.times.push(milliseconds(drawn.time)),
                 Err(PovrayError::Stopped) => {}
-                // It has drawn this scene before: reuse its first time.
-                Err(_) => dot.times.push(first),
+                Err(error) => {
+                    self.obstacle = Some(error.to_string());
+                    self.measurements.remove(index);
+                }
             }
             return true;
         }

@@ -60,7 +60,8 @@ pub struct Key<T> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Interpolation {
-    /// A smooth curve through the keys, without overshoot.
+    /// A smooth curve through the keys. Numbers and the pace do not overshoot; a path in space is rounded, so that it
+    /// may swing past a key where it turns. Where a position rests, at two equal keys, it turns without a curve.
     #[default]
     Smooth,
     /// A straight line, at constant speed.

@@ -80,6 +80,12 @@ impl Animation {
             .collect()
     }
 
+    /// The number of all keys.
+    pub fn key_count(&self) -> usize {
+        let rows = self.tracks.iter().map(|row| row.keys.len());
+        self.keys.len() + rows.sum::<usize>()
+    }
+
     /// Returns whether both animations have the same tracks, with equal numbers of keys.
     pub fn has_same_keys_as(&self, other: &Self) -> bool {
         let is_same =
@@ -272,7 +278,8 @@ impl Track {
 }
 
 /// Sets the value at a time, either of the key at the index `existing` or of a new one. Returns its index. A new key
-/// takes the interpolation of the key before it, so that a cut stays a cut and an orbit continues.
+/// takes the interpolation of the key before it, so that a cut stays a cut and an orbit continues, and its part of the
+/// easing.
 fn put_key<T>(keys: &mut Vec<Key<T>>, existing: Option<usize>, (time, value): (f64, T)) -> usize {
     if let Some(existing) = existing {
         keys[existing].value = value;
@@ -288,7 +295,15 @@ fn put_key<T>(keys: &mut Vec<Key<T>>, existing: Option<usize>, (time, value): (f
     let at = keys.partition_point(|key| key.time < time);
     let mut key = Key::new(time, value);
     if (1..keys.len()).contains(&at) {
-        key.interpolation = keys[at - 1].interpolation;
+        let before = &mut keys[at - 1];
+        key.interpolation = before.interpolation;
+        // What starts or ends slowly still does so, and does not stop at the new key.
+        (before.easing, key.easing) = match before.easing {
+            Easing::Even => (Easing::Even, Easing::Even),
+            Easing::In => (Easing::In, Easing::Even),
+            Easing::Out => (Easing::Even, Easing::Out),
+            Easing::InOut => (Easing::In, Easing::Out),
+        };
     }
     keys.insert(at, key);
     at

@@ -100,7 +100,7 @@ pub use recovery::{Leftover, Recovery};
 pub use render::{Chosen, MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{
     Describe, Disc, Mesh, MeshSource, Outline, Plane, PlanePiece, Property, PropertyValue, Shape,
-    Sphere, Triangle,
+    Sphere, Triangle, rotations_between,
 };
 pub use target::Owners;
 pub use whole::{MAX_BYTES, Scene, around, default_ambient_intensity, light_pack};

@@ -45,7 +45,7 @@ pub fn maps() -> Vec<Map> {
             },
         )
     };
-    vec![map(Precision::Single), map(Precision::default())]
+    vec![map(Precision::default()), map(Precision::Single)]
 }
 
 fn bounces() -> Axis {

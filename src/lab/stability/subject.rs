@@ -99,8 +99,12 @@ impl MapSubject {
         match self {
             Self::Sphere | Self::Disc => self.farthest(scene),
             Self::Highlight => {
-                let packs = scene.color_packs.values().map(|pack| pack.phong_exponent);
-                packs.max_by(f64::total_cmp).map(|sharpest| (sharpest, 1.0))
+                let used = scene.used_packs();
+                let packs = scene.color_packs.iter();
+                let packs = packs.filter(|(name, _)| used.contains(name.as_str()));
+                let exponents = packs.map(|(_, pack)| pack.phong_exponent);
+                let sharpest = exponents.max_by(f64::total_cmp)?;
+                Some((sharpest, 1.0))
             }
             Self::Terminator
             | Self::Coincident
@@ -138,7 +142,7 @@ impl MapSubject {
     /// Distance in radii, and radius, of the sphere or disc that is farthest from the eye relative to its radius.
     fn farthest(self, scene: &Scene) -> Option<(f64, f64)> {
         let eye = scene.camera.position;
-        let round = scene.objects.iter().filter_map(|object| {
+        let round = scene.visible_objects().filter_map(|object| {
             let (center, radius) = match (&object.shape, self) {
                 (Shape::Sphere(sphere), Self::Sphere) => (sphere.center, sphere.radius),
                 (Shape::Disc(disc), Self::Disc) => (disc.center, disc.radius),

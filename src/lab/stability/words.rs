@@ -19,7 +19,18 @@ impl Map {
         let part = failing_part(&self.across, &columns).or_else(|| failing_part(&self.up, &rows));
         match part {
             Some((words, tries)) => format!("{} {words}", percent(tries.rate())),
-            None => format!("{} wherever it was tested", percent(total.rate())),
+            None => self.share_of_cells(),
+        }
+    }
+
+    /// Describes failures that are in no part of an axis.
+    fn share_of_cells(&self) -> String {
+        let tried = self.cells.iter().filter(|cell| cell.tries > 0);
+        let failing = tried.clone().filter(|cell| cell.failures > 0);
+        let rate = percent(failing.clone().copied().sum::<Tries>().rate());
+        match (failing.count(), tried.count()) {
+            (failing, tried) if failing == tried => format!("{rate} wherever it was tested"),
+            (failing, tried) => format!("{rate} in {failing} of {tried} cells"),
         }
     }
 
@@ -126,5 +137,6 @@ mod tests {
         assert_eq!(map([30, 0, 12, 0]).sentence(), "2.1 % up to 10 radii");
         assert_eq!(map([1, 2, 0, 0]).sentence(), "0.15 % up to scale 0.1");
         assert_eq!(map([1000; 4]).sentence(), "100 % wherever it was tested");
+        assert_eq!(map([100, 0, 0, 300]).sentence(), "20 % in 2 of 4 cells");
     }
 }

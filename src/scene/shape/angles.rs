@@ -43,6 +43,16 @@ pub fn turned_about(angles: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
     })
 }
 
+/// Returns rotations by less than half a turn each, which one after the other lead from some angles to others, in
+/// degrees, so that what is turned by them makes as many full turns.
+pub fn rotations_between(from: DVec3, to: DVec3) -> impl Iterator<Item = DQuat> {
+    let degrees = (to - from).abs().element_sum();
+    let steps = (degrees / MAX_STEP).floor().min(MAX_STEPS) as u32 + 1;
+    let angles = move |step: u32| from.lerp(to, f64::from(step) / f64::from(steps));
+    (0..steps)
+        .map(move |step| orientation_of(angles(step + 1)) * orientation_of(angles(step)).inverse())
+}
+
 /// Removes rounding noise from an angle with few digits: -50.00000000000001 becomes -50.
 fn without_noise(degrees: f64) -> f64 {
     let round = (degrees * 1e9).round() / 1e9;

@@ -23,6 +23,7 @@ mod triangle;
 
 mod kinds;
 
+pub use angles::rotations_between;
 pub use describe::{Describe, Property, PropertyValue};
 pub use disc::Disc;
 pub use kinds::Shape;

@@ -1,9 +1,9 @@
 //! Rotating or scaling a group through the properties of one of its members.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use crate::editor::{Edit, Item, ItemKind};
-use crate::scene::{Mesh, Object, Scene, Shape};
+use crate::scene::{Mesh, Object, Scene, Shape, rotations_between};
 
 /// Why a group cannot be stretched.
 const SHEARED: &str = "A group with rotated parts, or parts that are not meshes, can only be scaled by the same factor in x, y and z";
@@ -11,7 +11,8 @@ const SHEARED: &str = "A group with rotated parts, or parts that are not meshes,
 /// A transformation of all members.
 #[derive(Clone, Copy)]
 enum Change {
-    Rotate(DQuat),
+    /// Between two triples of rotation angles, in degrees.
+    Rotate(DVec3, DVec3),
     Scale(f64),
     Stretch(DVec3),
 }
@@ -20,9 +21,7 @@ impl Change {
     /// The transformation from one mesh to another, if it is a rotation or a scaling.
     fn between(old: &Mesh, new: &Mesh) -> Option<Self> {
         if old.rotation != new.rotation {
-            return Some(Self::Rotate(
-                new.orientation() * old.orientation().inverse(),
-            ));
+            return Some(Self::Rotate(old.rotation, new.rotation));
         }
         let ratio = new.scale / old.scale;
         match ratio == DVec3::splat(ratio.x) {
@@ -36,7 +35,10 @@ impl Change {
     /// can represent.
     fn apply(self, shape: &Shape, about: DVec3) -> Option<Shape> {
         match (self, shape) {
-            (Self::Rotate(by), shape) => Some(shape.turned(about, by)),
+            (Self::Rotate(from, to), shape) => {
+                let rotations = rotations_between(from, to);
+                Some(rotations.fold(shape.clone(), |shape, by| shape.turned(about, by)))
+            }
             (Self::Scale(by), shape) => Some(shape.scaled(about, by)),
             (Self::Stretch(by), Shape::Mesh(mesh)) if mesh.rotation == DVec3::ZERO => {
                 let stretched = Mesh {
@@ -52,7 +54,7 @@ impl Change {
 
     fn verb(self) -> &'static str {
         match self {
-            Self::Rotate(_) => "Rotate",
+            Self::Rotate(..) => "Rotate",
             Self::Scale(_) | Self::Stretch(_) => "Resize",
         }
     }

@@ -74,10 +74,10 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     } else if new_pace != pace || only.is_none() && changed.is_some() {
         // With several keys, each keeps the part that was not changed.
         let (interpolation, easing) = new_pace;
-        out.edit(if changed == Some("easing") {
-            Edit::key_easing(animation, places, easing)
-        } else {
-            Edit::key_interpolation(animation, places, interpolation)
+        out.edit(match changed {
+            Some("easing") => Edit::key_easing(animation, places, easing),
+            Some("around") => Edit::orbit_axis(animation, places, interpolation),
+            _ => Edit::key_interpolation(animation, places, interpolation),
         });
     }
 }
@@ -126,8 +126,10 @@ pub fn report_replaced_keys(ui: &Ui, editor: &Editor, out: &mut UiRequests) {
         return;
     }
     let before_move: Option<BeforeMove> = ui.data_mut(|data| data.remove_temp(drag_id()));
-    let before = before_move.map_or(0, |before_move| before_move.animation.all_keys().len());
-    let message = replaced_keys_message(before, &editor.scene().animation);
+    let message = before_move.and_then(|before_move| {
+        let before = before_move.animation.key_count();
+        replaced_keys_message(before, &editor.scene().animation)
+    });
     out.actions.extend(message.map(Action::Tell));
 }
 
@@ -162,7 +164,7 @@ fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
 
 /// The message after moved keys have replaced others, so that of `before` keys fewer are left.
 pub fn replaced_keys_message(before: usize, now: &Animation) -> Option<String> {
-    let count = before.saturating_sub(now.all_keys().len());
+    let count = before.saturating_sub(now.key_count());
     let them = if count == 1 { "it" } else { "them" };
     let keys = counted(count, "key");
     (count > 0).then(|| format!("This has replaced {keys}; undo brings {them} back"))

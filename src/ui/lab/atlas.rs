@@ -69,7 +69,7 @@ fn show_scale(ui: &Ui, area: Rect) -> f32 {
     let words = painter.text(
         area.min,
         Align2::LEFT_TOP,
-        "Share of trials that fail in single precision (32 bits). The default method comes first.",
+        "Share of trials that fail; in single precision (32 bits) unless it says otherwise. The default method comes first.",
         small.clone(),
         colors.text,
     );

@@ -4,7 +4,8 @@ use egui::{Button, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, vec2};
 
 use super::{heat, ramp};
 use crate::lab::stability::{Map, maps};
-use crate::scene::{Precision, Scene};
+use crate::plan::{RenderRequest, is_double};
+use crate::scene::Scene;
 use crate::ui::hint::Hinted as _;
 use crate::ui::theme::{GRID, ROW, palette};
 use crate::worker::Background;
@@ -46,12 +47,12 @@ impl Stability {
                 ui.label(headline(map));
                 ui.weak(map.sentence());
                 let warning = position.filter(|&position| heat::is_near_failing(map, position));
-                let is_double = scene.render.precision == Precision::Double;
+                let is_double = || is_double(scene, &RenderRequest::still(scene));
                 match (warning, self.is_used(scene, map)) {
                     _ if position.is_none() => {
                         ui.weak("Where your scene is on this map cannot be determined.");
                     }
-                    (Some(_), true) if is_double && map.subject.is_of_single_precision() => {
+                    (Some(_), true) if map.subject.is_of_single_precision() && is_double() => {
                         ui.weak("Your scene uses this close to where it fails in single precision, and is traced in double.");
                     }
                     (Some(_), true) => {
@@ -110,7 +111,10 @@ impl Stability {
             .filter(|other| other.subject == map.subject);
         let is_tested = same_subject.any(|other| other.method == used_method);
         let kind = |method: &str| method.split(':').next().map(str::to_owned);
-        used_method == map.method || !is_tested && kind(&used_method) == kind(&map.method)
+        // Every scene is rebased.
+        let is_possible = !map.method.ends_with("(not rebased)");
+        let is_of_kind = || kind(&used_method) == kind(&map.method);
+        used_method == map.method || !is_tested && is_possible && is_of_kind()
     }
 
     fn show_list(&mut self, ui: &mut Ui, scene: &Scene) {

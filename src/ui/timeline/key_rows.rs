@@ -58,7 +58,7 @@ impl KeyDrag {
         } else {
             0
         };
-        let before = self.before.all_keys().len() + copies;
+        let before = self.before.key_count() + copies;
         replaced_keys_message(before, now).filter(|_| *now != *self.before)
     }
 }

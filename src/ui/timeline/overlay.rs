@@ -76,6 +76,7 @@ impl Overlay {
         let mut occupied_cells = HashSet::new();
         // Among few selected keys, each is drawn and can be grabbed even where it covers others.
         let are_few = selected.len() <= MAX_SELECTED_DRAWN;
+        let near_view = view.expand(4.0 * MAX_CAMERA_WIDTH);
         for (index, key) in animation.keys.iter().enumerate() {
             let is_in_selection = selected.contains(&KeyId::of_camera(index));
             let is_selected = is_in_selection && are_few;
@@ -85,7 +86,11 @@ impl Overlay {
                 let fade = fade(&screen, extent, key.value.position);
                 colors.curve.gamma_multiply(fade)
             };
+            let is_dragged = self.dragged.is_some_and(|(dragged, _)| dragged == index);
             let eye = screen.place(key.value.position);
+            if !(is_selected || is_dragged || eye.is_some_and(|eye| near_view.contains(eye))) {
+                continue;
+            }
             let is_apart = |eye: Pos2| {
                 drawn
                     .iter()
@@ -99,7 +104,6 @@ impl Overlay {
             }
             let cell = |eye: Pos2| [eye.x, eye.y].map(|at| (at / HIT_CELL) as i32);
             let is_first = eye.is_some_and(|eye| occupied_cells.insert(cell(eye)));
-            let is_dragged = self.dragged.is_some_and(|(dragged, _)| dragged == index);
             if is_first || is_selected || is_dragged {
                 self.handle(ui, editor, &screen, index, out);
             }

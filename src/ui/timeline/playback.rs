@@ -14,8 +14,8 @@ pub fn advance_playback(ctx: &Context, editor: &mut Editor) {
     let timeline = editor.timeline();
     let animation = &editor.scene().animation;
     let frame = 1.0 / animation.frames_per_second;
-    let remaining = timeline.shown_time(animation) + frame - timeline.playhead;
-    ctx.request_repaint_after_secs((remaining / timeline.speed).clamp(0.002, frame) as f32);
+    let remaining = timeline.time_to_next_frame(animation);
+    ctx.request_repaint_after_secs(remaining.clamp(0.002, frame) as f32);
 }
 
 /// Pauses playback once a text is edited: what is typed into a field would be lost when its value changes.

@@ -323,7 +323,7 @@ fn copied_keys(editor: &Editor) -> Vec<Action> {
         return vec![Action::Tell(message.to_owned())];
     }
     let (changed, new) = animation.with_moved(places, shown - first, true);
-    let added = places.len() + animation.all_keys().len();
+    let added = places.len() + animation.key_count();
     let message = replaced_keys_message(added, &changed).map(Action::Tell);
     let made = [
         Action::Edit(Edit::animation(changed, "Copy keys")),
