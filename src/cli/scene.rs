@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{CliError, report_warning};
-use crate::scene::{Document, PathStep, Scene, message_at};
+use crate::scene::{Document, Scene, messages_about_objects};
 use crate::words::counted;
+
+/// Most mesh files that are reported one by one.
+const MAX_MESSAGES: usize = 100;
 
 /// Reads a scene. Objects whose meshes are missing are reported on stderr; the rest is kept.
 ///
@@ -35,23 +38,32 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     }
 }
 
-/// A message for each mesh file that could not be read, at the place of the first object that needs it; `consequence`
-/// is added to what is said of that.
+/// A message for each mesh file that could not be read, up to [`MAX_MESSAGES`], at the place of the first object that
+/// needs it; `consequence` is added to what is said of that.
 pub fn missing_meshes(path: &Path, scene: &Scene, consequence: &str) -> Vec<String> {
     let mut files: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, why) in scene.mesh_problems() {
         files.entry(why).or_default().push(index);
     }
-    let message = |(why, objects): (&str, Vec<usize>)| {
+    let more = files.len().saturating_sub(MAX_MESSAGES);
+    let sentence = |(why, objects): (&str, Vec<usize>)| {
         let first = objects[0];
         let name = &scene.objects[first].name;
         let names = match objects.len() - 1 {
             0 => format!("{name:?}"),
             more => format!("{name:?} and {}", counted(more, "more object")),
         };
-        let part = [PathStep::Field("objects"), PathStep::Index(first)];
         let sentence = format!("{names} cannot be shown{consequence}: {why}");
-        message_at(path, &part, sentence)
+        (first, sentence)
     };
-    files.into_iter().map(message).collect()
+    if files.is_empty() {
+        return Vec::new();
+    }
+    let sentences = files.into_iter().take(MAX_MESSAGES).map(sentence);
+    let mut messages = messages_about_objects(path, sentences.collect());
+    if more > 0 {
+        let files = counted(more, "more mesh file");
+        messages.push(format!("{}: {files} could not be read", path.display()));
+    }
+    messages
 }

@@ -16,10 +16,12 @@ pub(super) enum Placement {
     Joints(Vec<DMat4>),
 }
 
-/// Joint indices and weights of each point of a primitive.
+/// Four joint indices or weights for each point.
+type FourPerPoint = Vec<[f32; 4]>;
+
+/// Joint indices and weights of each point of a primitive, in sets of four.
 pub(super) struct SkinWeights {
-    joints: Vec<[f32; 4]>,
-    weights: Vec<[f32; 4]>,
+    sets: Vec<(FourPerPoint, FourPerPoint)>,
 }
 
 impl Placement {
@@ -69,21 +71,24 @@ impl Placement {
         points: usize,
         buffers: &Buffers,
     ) -> Result<Option<SkinWeights>, Fault> {
-        let joints = primitive.get(&Semantic::Joints(0));
-        let weights = primitive.get(&Semantic::Weights(0));
-        let (Self::Joints(_), Some(joints), Some(weights)) = (self, joints, weights) else {
+        let Self::Joints(_) = self else {
             return Ok(None);
         };
-        for accessor in [&joints, &weights] {
-            if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
-                let why = "does not hold four joints or weights for each point";
-                return Err(accessor_fault(accessor, why));
+        let mut sets = Vec::new();
+        for set in 0.. {
+            let joints = primitive.get(&Semantic::Joints(set));
+            let Some((joints, weights)) = joints.zip(primitive.get(&Semantic::Weights(set))) else {
+                break;
+            };
+            for accessor in [&joints, &weights] {
+                if accessor.dimensions() != Dimensions::Vec4 || accessor.count() != points {
+                    let why = "does not hold four joints or weights for each point";
+                    return Err(accessor_fault(accessor, why));
+                }
             }
+            sets.push((buffers.numbers(&joints)?, buffers.numbers(&weights)?));
         }
-        Ok(Some(SkinWeights {
-            joints: buffers.numbers(&joints)?,
-            weights: buffers.numbers(&weights)?,
-        }))
+        Ok((!sets.is_empty()).then_some(SkinWeights { sets }))
     }
 
     /// Returns the position of a point in the scene. The matrices are affine: their last row is 0 0 0 1.
@@ -97,14 +102,11 @@ impl Placement {
             Self::Whole(matrix) => return matrix.transform_point3(point),
             Self::Joints(joints) => joints,
         };
-        let influences = skin_weights.and_then(|skin_weights| {
-            Some((
-                skin_weights.joints.get(index)?,
-                skin_weights.weights.get(index)?,
-            ))
-        });
+        let sets = skin_weights.iter().flat_map(|weights| &weights.sets);
+        let influences =
+            sets.filter_map(|(joints, weights)| joints.get(index).zip(weights.get(index)));
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
-        if let Some((joint_indices, weights)) = influences {
+        for (joint_indices, weights) in influences {
             for (&joint_index, &weight) in joint_indices.iter().zip(weights) {
                 // Joint indices have at most two bytes, so they are exact in single precision.
                 if let Some(joint) = joints.get(joint_index as usize) {

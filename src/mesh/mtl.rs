@@ -83,7 +83,8 @@ impl<'a> Libraries<'a> {
         if let Some(missing) = self.missing.take() {
             let name = excerpt(&missing, MAX_NAME);
             return Some(format!(
-                "its colours are missing: there is no readable file {name} beside it"
+                "its colours are missing: there is no readable file {name} beside it, of at most {} MiB",
+                MAX_BYTES >> 20
             ));
         }
         if let Some(unknown) = self.unknown.take() {
@@ -130,7 +131,7 @@ impl<'a> Libraries<'a> {
         let loaded = self.load_file(name);
         if let Ok((_, numbers)) = &loaded {
             self.names.borrow_mut().extend(numbers.keys().cloned());
-        } else {
+        } else if !name.as_os_str().is_empty() {
             let mut missing = self.missing.borrow_mut();
             missing.get_or_insert_with(|| name.to_string_lossy().into_owned());
         }

@@ -85,7 +85,13 @@ fn polygons_of(model: &Model) -> usize {
     match model.mesh.face_arities.len() {
         // `tobj` leaves the arities empty if all faces are triangles.
         0 => model.mesh.indices.len() / 3,
-        count => count,
+        // Faces of fewer than three corners are points and lines.
+        _ => model
+            .mesh
+            .face_arities
+            .iter()
+            .filter(|&&corners| corners > 2)
+            .count(),
     }
 }
 

@@ -30,10 +30,13 @@ pub(super) fn find_fault(text: &str, message: &str) -> Fault {
                 // Coordinates on a continuation line are not checked.
                 if continues { None } else { point_error(words) }
             }
-            Some("f") => words
-                .take_while(|word| !word.starts_with('#'))
-                .filter(|&word| word != "\\")
-                .find_map(|word| corner_error(word, points_before, total)),
+            Some("f") => {
+                let corners = line.split('#').next().unwrap_or_default();
+                let corners = corners.split_ascii_whitespace().skip(1);
+                corners
+                    .filter(|&word| word != "\\")
+                    .find_map(|word| corner_error(word, points_before, total))
+            }
             _ => None,
         };
         if let Some(why) = why {

@@ -113,7 +113,8 @@ impl<'a> ObjLines<'a> {
                 LineKind::Point if begun_kind.is_none() && !continues => {
                     let point = point_prefix(line);
                     let extra_words = line[point.len()..].split_ascii_whitespace();
-                    self.has_colors |= 3 <= extra_words.count();
+                    let colors = extra_words.take_while(|word| word.parse::<f64>().is_ok());
+                    self.has_colors |= 3 <= colors.count();
                     point
                 }
                 LineKind::Material => self.libraries.without_comment(line),

@@ -9,11 +9,12 @@ use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
 
 use super::check::{Problem, check};
-use super::locate::{PathStep, claimed_version, has_inner_comments, header, locate};
+use super::locate::{PathStep, claimed_version, has_inner_comments, header, locate, locate_items};
 use super::parse_errors::sentence;
 use super::whole::{MAX_BYTES, Scene, VERSION};
 use crate::files::{Stamp, absolute, back_up, read_at_most, read_file, time_of, write_atomic};
 use crate::mesh::is_mesh_file;
+use crate::words::for_shell;
 
 /// The RON text of the demo scene, as embedded in the program.
 pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
@@ -40,7 +41,7 @@ pub enum SceneError {
     #[error("{0}")]
     Refused(Refusal),
     /// The file name is that of a mesh file; nothing was read.
-    #[error("{path} is a mesh file, not a scene: `glint convert {path} -o NAME.ron` converts it to a scene, and Import mesh in the File menu of the editor adds it to one", path = .path.display())]
+    #[error("{path} is a mesh file, not a scene: `glint convert {quoted} -o NAME.ron` converts it to a scene, and Import mesh in the File menu of the editor adds it to one", path = .path.display(), quoted = for_shell(&.path.display().to_string()))]
     Mesh {
         /// The file.
         path: PathBuf,
@@ -343,14 +344,18 @@ fn options() -> ron::Options {
         .with_recursion_limit(MAX_DEPTH)
 }
 
-/// Returns a message about the value at `part` of a scene file that was read before, at its line and column if the
-/// file can still be read.
-pub fn message_at(path: &Path, part: &[PathStep], sentence: String) -> String {
+/// Returns messages about objects of a scene file that was read before, given by their indices, at their lines and
+/// columns if the file can still be read.
+pub fn messages_about_objects(path: &Path, sentences: Vec<(usize, String)>) -> Vec<String> {
     let name = path.display().to_string();
-    match read_text(path) {
-        Ok(text) => refuse(&name, &text, locate(&text, part), sentence).to_string(),
-        Err(_) => format!("{name}: {sentence}"),
-    }
+    let text = read_text(path).unwrap_or_default();
+    let offsets = locate_items(&text, &[PathStep::Field("objects")]);
+    let sentences = sentences.into_iter();
+    let messages = sentences.map(|(index, sentence)| match offsets.get(index) {
+        Some(&at) => refuse(&name, &text, at, sentence).to_string(),
+        None => format!("{name}: {sentence}"),
+    });
+    messages.collect()
 }
 
 /// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports

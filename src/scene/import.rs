@@ -1,5 +1,6 @@
 //! Turning the parts of a mesh file into objects of a scene.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use glam::DVec3;
@@ -7,19 +8,38 @@ use glam::DVec3;
 use super::camera::Camera;
 use super::list::List;
 use super::material::{ColorPack, MAX_EXPONENT};
-use super::names::Names;
+use super::names::{Names, without_number};
 use super::object::{Light, Object};
 use super::shape::{Mesh, MeshFiles, MeshSource, Shape};
-use super::whole::Scene;
+use super::whole::{MAX_BYTES, Scene};
 use crate::mesh::{MeshError, Part, PartColors, read_mesh_file};
 
 /// Name of the color pack of parts without colours.
 const PLAIN_PACK: &str = "mesh";
 
+/// The color packs of a scene, for finding many of them.
+struct PackIndex {
+    names: Names,
+    /// The first pack of each colour, by its name without a number and its [`ColorPack::key`].
+    first_alike: HashMap<(String, ([u64; 10], bool)), String>,
+}
+
+impl PackIndex {
+    fn of(scene: &Scene) -> Self {
+        let mut first_alike = HashMap::new();
+        for (name, pack) in scene.color_packs.iter() {
+            let alike = (without_number(name).to_owned(), pack.key());
+            first_alike.entry(alike).or_insert_with(|| name.clone());
+        }
+        let names = Names::new(scene.color_packs.keys().map(String::as_str));
+        Self { names, first_alike }
+    }
+}
+
 impl Scene {
     /// Creates a scene of a mesh file, with everything in view and lit from two sides. If the file has a single
-    /// part and is in `folder`, where the scene is to be saved, the scene refers to it; otherwise meshes are
-    /// inline. Also returns [`MeshFile::notes`](crate::mesh::MeshFile::notes).
+    /// part, or is too large for a scene file, and is in `folder`, where the scene is to be saved, the scene refers to
+    /// it; otherwise meshes are inline. Also returns [`MeshFile::notes`](crate::mesh::MeshFile::notes).
     ///
     /// # Errors
     /// [`MeshError`]: which file, where in it, and what is wrong.
@@ -30,8 +50,16 @@ impl Scene {
         let mut scene = Self::empty();
         scene.packs_mut().clear();
         scene.lights = List::new();
-        let file = read_mesh_file(path)?;
+        let mut file = read_mesh_file(path)?;
         scene.add_parts(file.parts);
+        if scene.objects.len() > 1 && scene.own_bytes() > MAX_BYTES {
+            let note =
+                "its parts are one mesh of one colour, since a scene file could not hold them";
+            file.notes.push(note.to_owned());
+            scene.objects.truncate(1);
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            scene.objects[0].name = valid_name(stem.trim());
+        }
         let relative = folder.and_then(|folder| path.strip_prefix(folder).ok());
         if let (Some(relative), 1) = (relative.and_then(reference_to), scene.objects.len())
             && let Some(object) = scene.objects.get_mut(0)
@@ -56,9 +84,9 @@ impl Scene {
     pub fn add_parts(&mut self, parts: Vec<Part>) -> usize {
         let first = self.objects.len();
         let mut names = Names::new(self.objects.iter().map(|object| object.name.as_str()));
-        let mut pack_names = Names::new(self.color_packs.keys().map(String::as_str));
+        let mut packs = PackIndex::of(self);
         for part in parts {
-            let color_pack = self.pack_of(part.colors.as_ref(), &mut pack_names);
+            let color_pack = self.pack_of(part.colors.as_ref(), &mut packs);
             let Part {
                 name, triangles, ..
             } = part;
@@ -71,18 +99,23 @@ impl Scene {
         first
     }
 
-    /// Returns the name of the color pack for a part. An existing equal pack is reused.
-    fn pack_of(&mut self, colors: Option<&PartColors>, names: &mut Names) -> String {
+    /// Returns the name of the color pack for a part. An existing equal pack is reused, see [`Self::pack_like`].
+    fn pack_of(&mut self, colors: Option<&PartColors>, packs: &mut PackIndex) -> String {
         let (wanted, pack) = match colors {
             None => (PLAIN_PACK.to_owned(), plain_pack()),
             Some(colors) => (valid_name(&colors.name), color_pack(colors)),
         };
-        if let Some(name) = self.pack_like(&wanted, &pack) {
-            return name.to_owned();
+        if self.color_packs.get(&wanted) == Some(&pack) {
+            return wanted;
         }
-        let name = names.take(&wanted);
-        self.packs_mut().insert(name.clone(), pack);
-        name
+        let alike = (without_number(&wanted).to_owned(), pack.key());
+        let PackIndex { names, first_alike } = packs;
+        let name = first_alike.entry(alike).or_insert_with(|| {
+            let name = names.take(&wanted);
+            self.packs_mut().insert(name.clone(), pack);
+            name
+        });
+        name.clone()
     }
 
     /// Places the camera in front and a little above, so that everything is in view, and adds two lights.

@@ -25,6 +25,19 @@ pub fn locate(text: &str, path: &[PathStep]) -> usize {
     cursor.at
 }
 
+/// Returns the byte offsets of all items of the list at `path`; empty if there is none.
+pub fn locate_items(text: &str, path: &[PathStep]) -> Vec<usize> {
+    let mut cursor = Cursor::at_value(text);
+    let mut offsets = Vec::new();
+    if path.iter().all(|step| cursor.enter(step)) && cursor.open() {
+        while cursor.is_at_item() {
+            offsets.push(cursor.at);
+            cursor.skip_item();
+        }
+    }
+    offsets
+}
+
 /// Returns the `version` that the text states, if it has the form of a scene. It is read first, so that a file of a
 /// newer version is refused for its version and not for unknown fields.
 pub fn claimed_version(text: &str) -> Option<u32> {
@@ -186,26 +199,41 @@ impl<'a> Cursor<'a> {
     /// Moves into the part `step` of the value at the cursor. Returns false, with the cursor anywhere, if there is
     /// none.
     fn enter(&mut self, step: &PathStep) -> bool {
-        self.identifier();
-        self.skip_space();
-        if !matches!(self.peek(), Some('(' | '[' | '{')) {
+        if !self.open() {
             return false;
         }
-        self.at += 1;
-        for index in 0.. {
-            self.skip_space();
-            if matches!(self.peek(), None | Some(')' | ']' | '}')) {
-                return false;
-            }
+        let mut index = 0;
+        while self.is_at_item() {
             if self.item_matches(step, index) {
                 return true;
             }
-            self.skip_value();
-            if self.peek() == Some(',') {
-                self.at += 1;
-            }
+            self.skip_item();
+            index += 1;
         }
         false
+    }
+
+    /// Moves into a struct, list, tuple or map, behind its opening bracket. Returns whether there is one.
+    fn open(&mut self) -> bool {
+        self.identifier();
+        self.skip_space();
+        let is_open = matches!(self.peek(), Some('(' | '[' | '{'));
+        self.at += usize::from(is_open);
+        is_open
+    }
+
+    /// Moves to the next token, and returns whether it is one of an item.
+    fn is_at_item(&mut self) -> bool {
+        self.skip_space();
+        !matches!(self.peek(), None | Some(')' | ']' | '}'))
+    }
+
+    /// Moves behind an item and its comma.
+    fn skip_item(&mut self) {
+        self.skip_value();
+        if self.peek() == Some(',') {
+            self.at += 1;
+        }
     }
 
     /// With the cursor at an item, moves to its value and returns whether it is the one that `step` means.
@@ -272,6 +300,15 @@ Scene(
             ]),
             "22"
         );
+    }
+
+    #[test]
+    fn all_items_of_a_list_are_found_at_once() {
+        let objects = PathStep::Field("objects");
+        let places = locate_items(TEXT, std::slice::from_ref(&objects));
+        let one = |index| locate(TEXT, &[objects.clone(), PathStep::Index(index)]);
+        assert_eq!(places, [one(0), one(1)]);
+        assert!(locate_items(TEXT, &[PathStep::Field("lights")]).is_empty());
     }
 
     #[test]

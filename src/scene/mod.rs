@@ -79,7 +79,7 @@ pub use coincidence::{Coincidence, Overlap, coincidences};
 pub use differences::differences;
 pub use direction::unit;
 pub use examples::{EXAMPLES, Example};
-pub use file::{DEMO_TEXT, Document, SceneError, message_at, read_text};
+pub use file::{DEMO_TEXT, Document, SceneError, messages_about_objects, read_text};
 pub use frame::CoordinateFrame;
 pub use hints::{About, Hint, camera_hints, hints, scene_hints};
 pub use join::MAX_SEPARATED;

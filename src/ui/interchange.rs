@@ -173,8 +173,9 @@ pub fn import_parts(editor: &mut Editor, path: &Path, file: MeshFile) {
     if editor.scene().own_bytes() + bytes.sum::<u64>() > MAX_BYTES {
         let (name, limit) = (path.display(), MAX_BYTES >> 20);
         let quoted = for_shell(&name.to_string());
+        let scene = for_shell(&path.with_file_name("NAME.ron").display().to_string());
         let why = format!(
-            "{name} has {count} triangles, too many for the {limit} MiB of a scene file; `glint convert {quoted} -o NAME.ron` makes a scene next to it that refers to it"
+            "{name} has {count} triangles, too many for the {limit} MiB of a scene file; `glint convert {quoted} -o {scene}` makes a scene next to it that refers to it"
         );
         return editor.report_error_in(Ask::ImportMesh.title(), why);
     }

@@ -96,6 +96,11 @@ fn broken_lines_are_named() {
     ] {
         assert_eq!(wrong(line), format!("m.obj:6: {sentence}"));
     }
+    let remark = format!("{SQUARE}f 1 2 3#c\nf 1 2 9\n");
+    assert_eq!(
+        error_of("m.obj", remark),
+        "m.obj:6: this face names point 9, but there are only 4"
+    );
     let not_finite = format!("{SQUARE}v 1 NaN 0\nf 1 2 5\n");
     assert_eq!(
         error_of("m.obj", not_finite),
@@ -187,7 +192,8 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
         "mtllib Some.MTL\n{SQUARE}usemtl red # and blue\nf 1 2 3\ng b\nusemtl Material #25\nf 2 3 4\n"
     );
     let sample = Sample::new("m.obj", &text);
-    let missing = "its colours are missing: there is no readable file Some.MTL beside it";
+    let missing =
+        "its colours are missing: there is no readable file Some.MTL beside it, of at most 4 MiB";
     assert_eq!(sample.notes(), [missing]);
     sample.beside(
         "some.mtl",
@@ -217,6 +223,16 @@ fn colours_that_are_not_found_are_told_and_those_that_can_be_are_found() {
     let painted = "v 0 0 0 1 0 0\nv 1 0 0 1 1 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
     let notes = Sample::new("m.obj", painted).notes();
     assert_eq!(notes, ["colours of points or faces are left out"]);
+    let remark = "v 0 0 0 # first corner point\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert!(Sample::new("m.obj", remark).notes().is_empty());
+}
+
+#[test]
+fn faces_without_corners_do_not_merge_groups() {
+    let text = format!("{SQUARE}f\ng a\nf 1 2 3\nf\ng b\nf\nf 2 3 4\nf\ng c\nf 1 3 4\n");
+    let parts = Sample::new("m.obj", text).parts();
+    let names: Vec<_> = parts.iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(names, ["a", "b", "c"]);
 }
 
 #[test]

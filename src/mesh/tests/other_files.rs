@@ -347,26 +347,43 @@ fn skins_put_points_where_their_joints_are() {
     let mut bind = [glam::Mat4::IDENTITY; 2];
     bind[1] = glam::Mat4::from_translation(glam::Vec3::Z);
     let bind = bind.map(|matrix| matrix.to_cols_array()).concat();
-    let bytes = [bytes_of(&TRIANGLE), joints, weights, bytes_of(&bind)].concat();
+    let more_weights = [[0; 4], [0, 255, 0, 0], [0; 4]].concat();
+    let bytes = [
+        bytes_of(&TRIANGLE),
+        joints,
+        weights,
+        bytes_of(&bind),
+        more_weights,
+    ]
+    .concat();
+    let weights_in = |view: u32| {
+        format!(
+            r#"{{"bufferView":{view},"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}}"#
+        )
+    };
     let accessors = format!(
-        r#"{FLOATS}}},{{"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"}},
-{{"bufferView":2,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}},
-{{"bufferView":3,"componentType":5126,"count":2,"type":"MAT4"}}"#
+        r#"{FLOATS}}},{{"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"}},{},
+{{"bufferView":3,"componentType":5126,"count":2,"type":"MAT4"}},{}"#,
+        weights_in(2),
+        weights_in(4),
     );
     // The transform of the mesh's own node does not matter.
     let more = r#""skins":[{"joints":[1,2],"inverseBindMatrices":3}],
 "nodes":[{"mesh":0,"skin":0,"translation":[50,0,0]},{"translation":[10,0,0],"children":[2]},{"translation":[0,20,0]}]"#;
-    let found = corners(
-        &bytes,
-        &accessors,
-        &[(0, 36), (36, 12), (48, 12), (60, 128)],
-        r#","JOINTS_0":1,"WEIGHTS_0":2"#,
-        more,
-    );
+    let views = [(0, 36), (36, 12), (48, 12), (60, 128), (188, 12)];
+    let one_set = r#","JOINTS_0":1,"WEIGHTS_0":2"#;
+    let found = corners(&bytes, &accessors, &views, one_set, more);
     let expected = [
         DVec3::new(10.0, 0.0, 0.0),
         DVec3::new(10.0, 11.0, 0.5),
         DVec3::new(11.0, 20.0, 1.0),
     ];
     assert_eq!(found, expected);
+    // A second set of four: the second point follows the first joint as well.
+    let two_sets = r#","JOINTS_0":1,"WEIGHTS_0":2,"JOINTS_1":1,"WEIGHTS_1":4"#;
+    let found = corners(&bytes, &accessors, &views, two_sets, more);
+    assert_eq!(
+        found,
+        [expected[0], expected[1], DVec3::new(11.0, 10.0, 0.5)]
+    );
 }

@@ -68,9 +68,22 @@ struct SerializedMesh {
 }
 
 /// The serialized form of a mesh point.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize)]
 #[serde(transparent)]
 struct Point(#[serde(with = "notation::vector")] DVec3);
+
+impl<'de> Deserialize<'de> for Point {
+    /// Checks the coordinates here, where the parser knows the line.
+    fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
+        let point = notation::vector::deserialize(file)?;
+        if point.is_finite() && point.abs().max_element() <= MAX_ABS_COORDINATE {
+            return Ok(Self(point));
+        }
+        Err(D::Error::custom(
+            "a point of a mesh has a coordinate that is not a finite number within 1e12 of 0",
+        ))
+    }
+}
 
 fn unscaled() -> DVec3 {
     DVec3::ONE
