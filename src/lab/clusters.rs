@@ -169,6 +169,16 @@ mod tests {
     }
 
     #[test]
+    fn a_way_that_can_be_chosen_is_not_hidden_by_one_that_cannot() {
+        let mut study = study(&[([10.0, 10.1, 10.2], 1e-3); 2]);
+        study.measurements[0].candidate.model = Model::Everything;
+        study.measurements[1].candidate.model = Model::Needed;
+        assert_eq!(clusters(&study), [vec![0, 1]]);
+        let costs = costs_of_choices(&study);
+        assert_eq!(cheapest_within(&costs, 2e-3, f64::INFINITY), Some(1));
+    }
+
+    #[test]
     fn a_doubtful_way_is_chosen_if_it_is_the_fastest_even_in_its_slowest_run() {
         let noisy = ([2.0, 3.0, 9.0], 1e-3);
         for (certain, chosen) in [(10.0, 0), (8.0, 1)] {

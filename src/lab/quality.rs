@@ -252,6 +252,14 @@ mod tests {
     }
 
     #[test]
+    fn the_error_of_the_reference_is_not_that_of_a_sampling() {
+        assert!((error_without(3e-4, 5e-4) - 4e-4).abs() < 1e-12);
+        // What is closer than the reference itself cannot be told from it.
+        assert_eq!(error_without(4e-4, 3e-4), 2e-4);
+        assert_eq!(error_without(0.0, 0.0), 0.0);
+    }
+
+    #[test]
     fn a_choice_keeps_to_what_was_asked_for() {
         for error in [0.05, 0.003] {
             let choice = chosen(Goal::Within(error));

@@ -178,6 +178,23 @@ fn keys_of_another_recording_are_not_called_edited() {
 }
 
 #[test]
+fn a_long_drag_of_the_tolerance_that_is_undone_leaves_keys_that_are_not_edited() {
+    let mut editor = recovered(Document::load(FLIGHT.as_ref()).expect("valid"));
+    survey_flight(&mut editor);
+    let before = editor.timeline().tolerance;
+    for step in 0..40 {
+        let tolerance = 0.5 + 0.2 * f64::from(step);
+        editor.apply(Action::Time(Time::Simplify(tolerance)));
+        survey_flight(&mut editor);
+    }
+    editor.end_gesture();
+    editor.apply(Action::Undo);
+    survey_flight(&mut editor);
+    assert!(!editor.timeline().is_edited);
+    assert_eq!(editor.timeline().tolerance, before);
+}
+
+#[test]
 fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     let mut editor = Editor::demo();
     let record = |editor: &mut Editor| {
@@ -476,6 +493,31 @@ fn the_last_frame_is_played_and_a_round_is_as_long_as_its_frames() {
             editor.apply(Action::Time(Time::Play(true)));
             assert_eq!(editor.shown_time(), 0.0);
         }
+    }
+}
+
+#[test]
+fn the_next_frame_comes_when_it_is_said_to_there_and_back() {
+    let mut editor = Editor::demo();
+    let light = Target::LightIntensity("Light 1".to_owned());
+    let animation = Animation {
+        frames_per_second: 5.0,
+        ..Animation::default()
+    };
+    let animation = animation.with_value(&light, 0.0, Value::Number(0.0));
+    let animation = animation.with_value(&light, 1.0, Value::Number(1.0));
+    editor.apply(Action::Edit(Edit::animation(animation, "keys")));
+    editor.apply(Action::Time(Time::Repeat(Repeat::PingPong)));
+    editor.apply(Action::Time(Time::Play(true)));
+    for _ in 0..30 {
+        let before = editor.shown_time();
+        let remaining = editor
+            .timeline()
+            .time_to_next_frame(&editor.scene().animation);
+        editor.apply(Action::Time(Time::Tick(remaining * 0.9)));
+        assert_eq!(editor.shown_time(), before);
+        editor.apply(Action::Time(Time::Tick(remaining * 0.1 + 1e-4)));
+        assert_ne!(editor.shown_time(), before);
     }
 }
 

@@ -3,12 +3,17 @@
 
 mod takes;
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
 
 use glam::DVec3;
 
 use super::*;
-use crate::scene::{Animation, Camera, Easing, Interpolation, Key, Orientation, Projection, Scene};
+use crate::scene::{
+    Animation, Camera, Easing, Interpolation, Key, Orientation, Projection, Scene, Target, Track,
+    Value,
+};
 
 fn camera(position: DVec3, yaw: f64, pitch: f64) -> Camera {
     let angles = Orientation {
@@ -457,4 +462,80 @@ proptest! {
             }
         }
     }
+}
+
+/// The places of a ball at equal times from its first key to its last.
+fn places_of_ball(keys: &[(f64, DVec3)]) -> Vec<DVec3> {
+    let mut scene = Scene::demo();
+    let target = Target::ObjectPosition(scene.objects[0].name.clone());
+    let keys: Vec<_> = keys
+        .iter()
+        .map(|(time, at)| Key::new(*time, Value::Point(*at)))
+        .collect();
+    let end = keys.last().expect("keys").time;
+    scene.animation_mut().tracks = vec![Track { target, keys }];
+    let scene = Arc::new(scene);
+    let time = |n: u32| end * f64::from(n) / 120.0;
+    let place = |n| pose(&scene, time(n)).objects[0].shape.position();
+    (0..=120).map(place).collect()
+}
+
+#[test]
+fn what_falls_and_rests_does_not_sink_and_what_circles_stays_round() {
+    let (high, low) = (DVec3::Y * 100.0, DVec3::Y * 10.0);
+    let aside = DVec3::new(100.0, 10.0, 0.0);
+    let fallen = places_of_ball(&[(0.0, high), (1.0, low), (2.0, low), (3.0, aside)]);
+    for place in fallen {
+        assert!(place.y >= 10.0 - 1e-9 && place.x >= -1e-9, "{place}");
+    }
+    let corner = |n: usize| {
+        let angle = (n as f64 + 0.5) * std::f64::consts::FRAC_PI_2;
+        (n as f64, DVec3::new(angle.cos(), 0.0, angle.sin()) * 100.0)
+    };
+    let round = places_of_ball(&(0..9).map(corner).collect::<Vec<_>>());
+    for place in &round[15..105] {
+        assert!((place.length() - 100.0).abs() < 8.0, "{place}");
+    }
+}
+
+#[test]
+fn a_camera_on_an_orbit_turns_with_it() {
+    let on_circle = |degrees: f64, aside: f64| {
+        let angle = degrees.to_radians();
+        let position = DVec3::new(angle.cos(), 0.0, angle.sin()) * 100.0;
+        camera(position, degrees - 90.0 + aside, 0.0)
+    };
+    let facing = |camera: &Camera| camera.look_at.normalize().dot(-camera.position.normalize());
+    for (turn, aside) in [
+        (170.0, 15.0),
+        (-170.0, -15.0),
+        (180.0, 0.0),
+        (170.0, -15.0),
+        (90.0, 15.0),
+    ] {
+        let keys = [(0.0, on_circle(0.0, 0.0)), (1.0, on_circle(turn, aside))];
+        let mut keys = keys.map(|(time, camera)| Key::new(time, camera));
+        keys[0].interpolation = Interpolation::Orbit {
+            around: DVec3::ZERO,
+        };
+        let path = CameraPath::new(&keys);
+        for time in times(&path, 40) {
+            let facing = facing(&at(&path, time));
+            assert!(
+                facing > 0.96,
+                "{facing} at {time} of {turn} with {aside} aside"
+            );
+        }
+    }
+    // A camera that does not turn stays as it is, even on half a turn.
+    let mut keys = [0.0, 180.0].map(|degrees| {
+        let mut camera = on_circle(degrees, 0.0);
+        camera.look_at = DVec3::NEG_Z;
+        Key::new(degrees, camera)
+    });
+    keys[0].interpolation = Interpolation::Orbit {
+        around: DVec3::ZERO,
+    };
+    let middle = at(&CameraPath::new(&keys), 90.0);
+    assert!(middle.look_at.normalize().abs_diff_eq(DVec3::NEG_Z, 1e-9));
 }

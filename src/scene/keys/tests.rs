@@ -115,3 +115,21 @@ fn both_sides_of_a_jump_stay_two_keys() {
         assert_eq!(moved.keys.len(), count, "{later} {are_copies}");
     }
 }
+
+#[test]
+fn a_key_set_on_an_eased_way_shares_the_easing() {
+    let target = Target::AmbientIntensity;
+    let ends = Animation::default().with_value(&target, 0.0, Value::Number(0.0));
+    let ends = ends.with_value(&target, 2.0, Value::Number(1.0));
+    for (easing, expected) in [
+        (Easing::Even, (Easing::Even, Easing::Even)),
+        (Easing::In, (Easing::In, Easing::Even)),
+        (Easing::Out, (Easing::Even, Easing::Out)),
+        (Easing::InOut, (Easing::In, Easing::Out)),
+    ] {
+        let eased = ends.with_pace(&ends.all_keys(), |(_, each)| *each = easing);
+        let between = eased.with_value(&target, 1.0, Value::Number(0.5));
+        let keys = &between.tracks[0].keys;
+        assert_eq!((keys[0].easing, keys[1].easing), expected);
+    }
+}

@@ -80,6 +80,13 @@ mod tests {
             (lying - DVec3::new(90.0, 360.0, 0.0)).length() < 1e-9,
             "{lying}"
         );
+        // What is turned by the steps from one triple of angles to another turns as often.
+        for to in [DVec3::Y * 360.0, DVec3::Y * 270.0, DVec3::X * -720.0] {
+            let turned = rotations_between(DVec3::ZERO, to).fold(DVec3::ZERO, |angles, by| {
+                angles_of(by * orientation_of(angles), angles)
+            });
+            assert!((turned - to).length() < 1e-6, "{turned} for {to}");
+        }
         // About an oblique axis, only the resulting orientation is predictable, not the angles.
         let angles = DVec3::new(12.0, 20.0, -40.0);
         let axis = DVec3::new(0.6, 0.0, -0.8);

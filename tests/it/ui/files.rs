@@ -6,7 +6,7 @@ use std::time::Duration;
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glint::editor::{Editor, excerpt};
+use glint::editor::{Action, Edit, Editor, Item, Selection, excerpt};
 use glint::export::povray_text;
 use glint::files::Stamp;
 use glint::scene::{Document, Recovery, Scene, Shape};
@@ -751,6 +751,30 @@ fn a_file_that_another_program_has_broken_is_told_and_what_is_open_counts_as_uns
     std::fs::write(&path, demo_text(20.0)).expect("written");
     harness.wait_for("the file again", |harness| !harness.editor().is_dirty());
     assert!(!harness.sees("no longer exists"));
+}
+
+#[test]
+fn undo_brings_back_what_another_program_has_replaced_with_its_comments() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.ron");
+    let header = |editor: &Editor| editor.document().header;
+    std::fs::write(&path, format!("// mine\n{}", demo_text(20.0))).expect("written");
+    let mut editor = Editor::demo();
+    editor.open(Document::load_stamped(&path).expect("valid"), &path);
+    editor.apply(Action::Select(Selection::all([Item::object(0)])));
+    let mut other = Editor::demo();
+    other.apply(Action::Edit(Edit::Delete(vec![Item::object(0)])));
+    let text = other.to_text().expect("a text");
+    std::fs::write(&path, format!("// theirs\n{text}")).expect("written");
+    editor.take_theirs(Document::load_stamped(&path).expect("valid"));
+    assert_eq!(header(&editor), "// theirs\n");
+    // What was selected is gone, and nothing else is selected in its place.
+    assert!(editor.selection().items().is_empty());
+    editor.apply(Action::Undo);
+    assert_eq!(header(&editor), "// mine\n");
+    assert_eq!(editor.selection().items(), [Item::object(0)]);
+    editor.apply(Action::Redo);
+    assert_eq!(header(&editor), "// theirs\n");
 }
 
 #[test]
