@@ -42,7 +42,8 @@ pub(super) fn read(bytes: &[u8], folder: &Path, stem: &str) -> Result<MeshFile, 
     let materials = materials.unwrap_or_default();
     let mut pieces: IndexMap<_, Vec<Model>> = IndexMap::new();
     let mut polygons = 0;
-    for model in models {
+    // Faces without corners make models without any.
+    for model in models.into_iter().filter(|model| 0 < polygons_of(model)) {
         let group = lines
             .group_starts
             .partition_point(|&start| start <= polygons);

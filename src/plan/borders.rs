@@ -32,7 +32,7 @@ impl Borders {
         let count = points.len();
         let are_different = (1..count as u32).any(|face| material(face) != material(0));
         let is_alike = |&[one, other]: &[u32; 2]| material(one) == material(other);
-        let surface = Surface {
+        let surface = Faces {
             points,
             corners,
             edges: &edges,
@@ -112,14 +112,14 @@ impl Edges {
     }
 }
 
-/// A surface over which straight lines are traced.
-struct Surface<'a, F> {
+/// The faces of a surface, over which straight lines are traced.
+struct Faces<'a, F> {
     points: &'a [[u32; 3]],
     corners: F,
     edges: &'a Edges,
 }
 
-impl<F: Fn(u32) -> [Vec3<f64>; 3]> Surface<'_, F> {
+impl<F: Fn(u32) -> [Vec3<f64>; 3]> Faces<'_, F> {
     /// The distance along the surface from the border edge of a face to the next border; infinity if that is far.
     fn width(&self, face: u32) -> f64 {
         let mut least = f64::INFINITY;

@@ -494,7 +494,7 @@ fn what_falls_and_rests_does_not_sink_and_what_circles_stays_round() {
     };
     let round = places_of_ball(&(0..9).map(corner).collect::<Vec<_>>());
     for place in &round[15..105] {
-        assert!((place.length() - 100.0).abs() < 8.0, "{place}");
+        assert!((place.length() - 100.0).abs() < 12.0, "{place}");
     }
 }
 
