@@ -52,32 +52,44 @@ impl Scene {
         scene.lights = List::new();
         let mut file = read_mesh_file(path)?;
         scene.add_parts(file.parts);
-        if scene.objects.len() > 1 && scene.own_bytes() > MAX_BYTES {
-            let note =
-                "its parts are one mesh of one colour, since a scene file could not hold them";
-            file.notes.push(note.to_owned());
-            scene.objects.truncate(1);
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            scene.objects[0].name = valid_name(stem.trim());
-        }
         let relative = folder.and_then(|folder| path.strip_prefix(folder).ok());
-        if let (Some(relative), 1) = (relative.and_then(reference_to), scene.objects.len())
-            && let Some(object) = scene.objects.get_mut(0)
-            && let Shape::Mesh(mesh) = &mut object.shape
+        let has_parts = scene.objects.len() > 1;
+        if let Some(relative) = relative.and_then(reference_to)
+            && (!has_parts || scene.own_bytes() > MAX_BYTES)
+            && let Some(object) = scene.linked_to(relative, folder)
         {
-            // The mesh keeps the coordinates of the file, which are not centred.
-            let mut linked = Mesh {
-                source: MeshSource::unread(relative),
-                position: DVec3::ZERO,
-                ..mesh.clone()
-            };
-            linked.load(folder, &mut MeshFiles::new());
-            if linked.source.problem().is_none() {
-                *mesh = linked;
+            scene.objects = List::from(vec![object]);
+            if has_parts {
+                let note =
+                    "its parts are one mesh of one colour, since a scene file could not hold them";
+                file.notes.push(note.to_owned());
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                scene.objects[0].name = valid_name(stem.trim());
+                let pack = scene.objects[0].color_pack.clone();
+                scene.packs_mut().retain(|name, _| *name == pack);
             }
         }
         scene.frame_and_light();
         Ok((scene, file.notes))
+    }
+
+    /// The first object with the mesh file at this path within `folder` as its mesh; `None` if that cannot be read.
+    fn linked_to(&self, path: String, folder: Option<&Path>) -> Option<Object> {
+        let object = self.objects.get(0)?;
+        let Shape::Mesh(mesh) = &object.shape else {
+            return None;
+        };
+        // The mesh keeps the coordinates of the file, which are not centred.
+        let mut linked = Mesh {
+            source: MeshSource::unread(path),
+            position: DVec3::ZERO,
+            ..mesh.clone()
+        };
+        linked.load(folder, &mut MeshFiles::new());
+        linked.source.problem().is_none().then(|| Object {
+            shape: linked.into(),
+            ..object.clone()
+        })
     }
 
     /// Appends parts as objects, with their colours as color packs. Returns the index of the first.
