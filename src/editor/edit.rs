@@ -147,16 +147,6 @@ impl Edit {
         Self::animation(changed, "Key: interpolation")
     }
 
-    /// Sets the axis of those of these keys that orbit.
-    pub fn orbit_axis(animation: &Animation, keys: &Keys, to: Interpolation) -> Self {
-        let changed = animation.with_pace(keys, |(each, _)| {
-            if matches!(each, Interpolation::Orbit { .. }) {
-                *each = to;
-            }
-        });
-        Self::animation(changed, "Key: interpolation")
-    }
-
     /// Sets the easing after these keys of an animation.
     pub fn key_easing(animation: &Animation, keys: &Keys, to: Easing) -> Self {
         let changed = animation.with_pace(keys, |(_, each)| *each = to);

@@ -267,31 +267,6 @@ fn several_packs_move_together_and_stay_selected() {
 }
 
 #[test]
-fn another_axis_makes_no_orbits_of_cuts_and_straight_ways() {
-    let orbit = |x: f64| Interpolation::Orbit {
-        around: DVec3::X * x,
-    };
-    let ways = [orbit(0.0), Interpolation::Hold, Interpolation::Linear];
-    let key = |(time, way): (usize, Interpolation)| Key {
-        interpolation: way,
-        ..Key::new(time as f64, Scene::demo().camera.clone())
-    };
-    let animation = Animation {
-        keys: ways.into_iter().enumerate().map(key).collect(),
-        ..Animation::default()
-    };
-    let mut editor = Editor::demo();
-    let edit = Edit::orbit_axis(&animation, &animation.all_keys(), orbit(5.0));
-    editor.apply(Action::Edit(edit));
-    let keys = editor.scene().animation.keys.iter();
-    let found: Vec<_> = keys.map(|key| key.interpolation).collect();
-    assert_eq!(
-        found,
-        [orbit(5.0), Interpolation::Hold, Interpolation::Linear]
-    );
-}
-
-#[test]
 fn high_res_ends_with_the_next_change() {
     let mut editor = Editor::demo();
     editor.apply(Action::Show(Mode::HighRes));

@@ -80,6 +80,15 @@ impl Animation {
             .collect()
     }
 
+    /// Returns those of these keys from which the way to the next one is an orbit.
+    pub fn orbiting(&self, keys: &Keys) -> Keys {
+        let is_orbiting = |key: &KeyId| {
+            let pace = self.time_and_pace_of(*key);
+            pace.is_some_and(|(_, (way, _))| matches!(way, Interpolation::Orbit { .. }))
+        };
+        keys.iter().copied().filter(is_orbiting).collect()
+    }
+
     /// The number of all keys.
     pub fn key_count(&self) -> usize {
         let rows = self.tracks.iter().map(|row| row.keys.len());

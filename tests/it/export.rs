@@ -832,20 +832,6 @@ fn what_may_only_be_read_is_not_replaced() {
     );
     assert_eq!(fs::read_to_string(&picture).expect("there"), "a photograph");
     // The name of a folder is refused before anything is traced, too.
-    let path = folder.path().join("new/");
-    let path = path.to_str().expect("plain");
-    let said = stderr_of(
-        &mut glint(&[
-            "render",
-            FLIGHT,
-            "--width",
-            "8",
-            "-o",
-            &format!("{path}x.png/"),
-        ]),
-        1,
-    );
-    assert!(said.contains("does not exist"), "{said}");
     let csv = format!("{}/new.csv/", folder.path().display());
     let said = stderr_of(&mut glint(&["chart", FLIGHT, "--csv", &csv]), 1);
     assert!(said.contains("this is the name of a folder"), "{said}");

@@ -133,3 +133,22 @@ fn a_key_set_on_an_eased_way_shares_the_easing() {
         assert_eq!((keys[0].easing, keys[1].easing), expected);
     }
 }
+
+#[test]
+fn only_keys_that_orbit_have_an_axis() {
+    let ways = [
+        Interpolation::Hold,
+        Interpolation::Orbit { around: DVec3::X },
+        Interpolation::Linear,
+    ];
+    let key = |(time, interpolation): (usize, Interpolation)| Key {
+        interpolation,
+        ..Key::new(time as f64, Camera::default())
+    };
+    let animation = Animation {
+        keys: ways.into_iter().enumerate().map(key).collect(),
+        ..Animation::default()
+    };
+    let orbiting = animation.orbiting(&animation.all_keys());
+    assert_eq!(orbiting, Keys::from([KeyId::of_camera(1)]));
+}

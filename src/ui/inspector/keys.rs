@@ -76,7 +76,9 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
         let (interpolation, easing) = new_pace;
         out.edit(match changed {
             Some("easing") => Edit::key_easing(animation, places, easing),
-            Some("around") => Edit::orbit_axis(animation, places, interpolation),
+            Some("around") => {
+                Edit::key_interpolation(animation, &animation.orbiting(places), interpolation)
+            }
             _ => Edit::key_interpolation(animation, places, interpolation),
         });
     }
