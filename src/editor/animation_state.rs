@@ -168,15 +168,12 @@ impl AnimationState {
     /// Notes that `keys` were made of a recording with this tolerance, in pixels, instead of those made earlier in the
     /// same drag.
     pub fn remember_simplified(&mut self, take: Arc<Take>, tolerance: f64, keys: Vec<Key<Camera>>) {
-        let is_kept = |one: &SimplifiedKeys| one.keys == keys && !one.is_passing;
-        let is_passing = !self.simplified_keys.iter().any(is_kept);
-        self.simplified_keys
-            .retain(|other| other.keys != keys && !other.is_passing);
+        self.simplified_keys.retain(|other| !other.is_passing);
         self.simplified_keys.push(SimplifiedKeys {
             take,
             tolerance,
             keys,
-            is_passing,
+            is_passing: true,
         });
         let excess = self.simplified_keys.len().saturating_sub(MAX_REMEMBERED);
         self.simplified_keys.drain(..excess);

@@ -158,7 +158,12 @@ fn a_tree_changes_no_bit_and_no_ray() {
         (cone(), 0.0),
     ];
     for (number, (scene, other_rays)) in scenes.iter().enumerate() {
-        for sampling in [Sampling::Centres, Sampling::Grid(2), Sampling::ADAPTIVE] {
+        // Clean edges take long as a list.
+        for (sampling, (width, height)) in [
+            (Sampling::Centres, (120, 90)),
+            (Sampling::Grid(2), (120, 90)),
+            (Sampling::ADAPTIVE, (72, 54)),
+        ] {
             for precision in [Precision::Single, Precision::Double] {
                 let with = |accelerator, model| {
                     let wanted = RenderRequest {
@@ -166,7 +171,7 @@ fn a_tree_changes_no_bit_and_no_ray() {
                         model,
                         sampling,
                         precision,
-                        ..RenderRequest::sized(120, 90)
+                        ..RenderRequest::sized(width, height)
                     };
                     picture(scene, &wanted)
                 };
@@ -182,10 +187,7 @@ fn a_tree_changes_no_bit_and_no_ray() {
                         continue;
                     }
                     let off = [1, 8].map(|levels| differing(&tree.0, &flat.0, levels));
-                    assert!(
-                        off[0] <= 10 && off[1] == 0,
-                        "{case}: {off:?} of 10800 pixels"
-                    );
+                    assert!(off[0] <= 4 && off[1] == 0, "{case}: {off:?} of 3888 pixels");
                     let (ours, theirs) = (tree.1.camera as f64, flat.1.camera as f64);
 
                     assert!(

@@ -764,7 +764,8 @@ fn undo_brings_back_what_another_program_has_replaced_with_its_comments() {
     editor.apply(Action::Select(Selection::all([Item::object(0)])));
     let mut other = Editor::demo();
     other.apply(Action::Edit(Edit::Delete(vec![Item::object(0)])));
-    let text = other.to_text().expect("a text");
+    let theirs = Document::of(Scene::clone(other.scene()));
+    let text = theirs.to_text().expect("a text");
     std::fs::write(&path, format!("// theirs\n{text}")).expect("written");
     editor.take_theirs(Document::load_stamped(&path).expect("valid"));
     assert_eq!(header(&editor), "// theirs\n");
