@@ -1,6 +1,7 @@
 //! The order of objects: a group is listed in the place of its first member, with all its members.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use super::item::Item;
 use crate::scene::{List, Object, Scene};
@@ -127,11 +128,32 @@ pub fn arrange(scene: &mut Scene, arrangement: Arrangement) -> Vec<Item> {
         reorder(scene, &order);
     }
     if let Some(group) = arrangement.group {
+        let whole = if group.is_empty() {
+            whole_groups(scene, &new_indices)
+        } else {
+            HashSet::new()
+        };
         for index in new_indices.clone() {
-            scene.objects[index].group.clone_from(&group);
+            if !whole.contains(&scene.objects[index].group) {
+                scene.objects[index].group.clone_from(&group);
+            }
         }
     }
     new_indices.map(Item::object).collect()
+}
+
+/// Names of the groups of several objects that are all at these indices: they move as one and stay groups.
+fn whole_groups(scene: &Scene, moved: &Range<usize>) -> HashSet<String> {
+    let mut counts: HashMap<&str, (usize, usize)> = HashMap::new();
+    for (index, object) in scene.objects.iter().enumerate() {
+        let (all, inside) = counts.entry(object.group.as_str()).or_default();
+        *all += 1;
+        *inside += usize::from(moved.contains(&index));
+    }
+    let whole = counts
+        .into_iter()
+        .filter(|(_, (all, inside))| *all > 1 && all == inside);
+    whole.map(|(group, _)| group.to_owned()).collect()
 }
 
 /// Takes out the items at these indices, in ascending order, and inserts them again before the one that is at index
@@ -212,6 +234,14 @@ mod tests {
         let moved = arrange(&mut scene, after(&[0], 1, Some("")));
         assert_eq!(names(&scene), ["g:c", "b", "a", "d"]);
         assert_eq!(moved, [Item::object(2)]);
+    }
+
+    #[test]
+    fn a_whole_group_stays_one_wherever_it_goes_with_others() {
+        let mut scene = scene(&["g:a", "g:b", "c", "d", "h:e", "h:f"]);
+        // All of g and c go behind d, and so does one of h, which leaves it.
+        arrange(&mut scene, after(&[0, 1, 2, 4], 3, Some("")));
+        assert_eq!(names(&scene), ["d", "g:a", "g:b", "c", "e", "h:f"]);
     }
 
     #[test]

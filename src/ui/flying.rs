@@ -167,7 +167,16 @@ impl Flying {
         if !picture.hovered() && !is_looking {
             return 0.0;
         }
-        let wheel = f64::from(ui.input(|input| input.smooth_scroll_delta().y));
+        // With Shift, which flies faster, egui reports the wheel as scrolling to the side.
+        let turned = ui.input(|input| {
+            let delta = input.smooth_scroll_delta();
+            if input.modifiers.shift {
+                delta.x + delta.y
+            } else {
+                delta.y
+            }
+        });
+        let wheel = f64::from(turned);
         if wheel == 0.0 {
             return 0.0;
         }

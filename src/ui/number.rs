@@ -287,7 +287,9 @@ fn edit_value(
     let parser = |text: &str| {
         let text = text.trim();
         let text = text.strip_suffix(field.unit.trim()).unwrap_or(text);
-        if let (Some(pasted), Some(vector)) = (pasted, parse_vec3(text)) {
+        // Nobody writes 000 for a coordinate: those are thousands.
+        let is_grouped = text.split(',').skip(1).any(|part| part == "000");
+        if let (Some(pasted), Some(vector)) = (pasted, parse_vec3(text).filter(|_| !is_grouped)) {
             let parts = vector.to_array();
             refused.set(parts.iter().find_map(|part| out_of_range(field, *part)));
             let is_within = parts.iter().all(|part| field.range.contains(part));

@@ -178,13 +178,16 @@ impl Worker {
     pub fn activity(&self) -> Activity {
         let mailbox = self.shared.mailbox();
         let live = mailbox.running(Crew::Prompt);
-        if let Some(running) = live.filter(|running| running.kind == JobKind::Live) {
+        let is_live = |kind| matches!(kind, JobKind::Live | JobKind::Smooth);
+        if let Some(running) = live.filter(|running| is_live(running.kind)) {
             return Activity::Live {
                 revision: running.revision,
                 elapsed: running.spent(),
             };
         }
-        if let Some(Job::Live(live)) = mailbox.waiting(JobKind::Live) {
+        let waiting = mailbox.waiting(JobKind::Live);
+        let waiting = waiting.or_else(|| mailbox.waiting(JobKind::Smooth));
+        if let Some(Job::Live(live) | Job::Smooth(live)) = waiting {
             return Activity::Live {
                 revision: live.revision,
                 elapsed: Duration::ZERO,

@@ -20,6 +20,8 @@ pub enum JobKind {
     Live,
     /// A question about a scene.
     Query,
+    /// The smooth edges of the live view.
+    Smooth,
     /// A thumbnail.
     Thumbnail,
     /// A question that takes seconds of measuring to answer.

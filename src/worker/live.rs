@@ -1,4 +1,5 @@
-//! Tracing of a live picture: coarse first, finer while there is time, smooth edges last.
+//! Tracing of a live picture: coarse first, finer while there is time, smooth edges last, as a job of their own that
+//! waits for questions: a drag begins with one.
 
 use std::time::Instant;
 
@@ -24,17 +25,8 @@ pub struct Live<'a> {
 }
 
 impl Live<'_> {
-    /// Traces and publishes passes until the picture is complete or stopped.
-    pub fn run(&mut self, control: &RenderControl, budget: &mut Budget, start: Instant) {
-        if self.trace_centres(control, budget, start).is_some()
-            && self.job.request.sampling != Sampling::Centres
-        {
-            self.smooth(control);
-        }
-    }
-
     /// Traces the centre of every pixel once, in passes from coarse to fine; `None` if it was stopped.
-    fn trace_centres(
+    pub fn trace_centres(
         &mut self,
         control: &RenderControl,
         budget: &mut Budget,
@@ -78,12 +70,12 @@ impl Live<'_> {
         Some(())
     }
 
-    fn smooth(&mut self, control: &RenderControl) {
-        let start = Instant::now();
+    /// Traces the picture with smooth edges; `None` if it was stopped.
+    pub fn smooth(&mut self, control: &RenderControl, start: Instant) -> Option<()> {
         let mut image = self.canvas();
-        if let Some(rays) = image.trace(&self.tracer, Pass::Whole, control) {
-            self.publish(image, 1, rays, self.job.request.sampling, start);
-        }
+        let rays = image.trace(&self.tracer, Pass::Whole, control)?;
+        self.publish(image, 1, rays, self.job.request.sampling, start);
+        Some(())
     }
 
     fn canvas(&mut self) -> Image {

@@ -18,6 +18,8 @@ type QuestionSort = Discriminant<Question>;
 #[derive(Debug)]
 pub enum Job {
     Live(LiveJob),
+    /// A live picture whose pixels have one sample each so far.
+    Smooth(LiveJob),
     Query(QueryJob),
     Thumbnail(ThumbnailJob),
     /// To look at, or to be saved.
@@ -32,6 +34,7 @@ impl Job {
     pub fn kind(&self) -> JobKind {
         match self {
             Self::Live(_) => JobKind::Live,
+            Self::Smooth(_) => JobKind::Smooth,
             Self::Query(QueryJob {
                 question: Question::Quality(_),
                 ..
@@ -58,8 +61,9 @@ impl Job {
     /// Whether it makes an older job pointless that has this kind, revision and sort of question.
     fn replaces(&self, kind: JobKind, revision: u64, question: Option<QuestionSort>) -> bool {
         // A still picture to look at is outdated once the scene has changed.
-        let is_outdated =
-            (kind, self.kind()) == (JobKind::Still, JobKind::Live) && revision < self.revision();
+        let is_live = self.kind() == JobKind::Live;
+        let is_outdated = is_live && kind == JobKind::Still && revision < self.revision()
+            || is_live && kind == JobKind::Smooth;
         let is_same = kind == self.kind() && kind.is_replaced();
         let is_asked_anew = question.is_some() && question == self.question();
         is_outdated || is_same || is_asked_anew
@@ -68,7 +72,7 @@ impl Job {
     /// Revision of the scene, for live and still pictures; 0 for others.
     fn revision(&self) -> u64 {
         match self {
-            Self::Live(live) => live.revision,
+            Self::Live(live) | Self::Smooth(live) => live.revision,
             Self::Still(still) => still.revision,
             _ => 0,
         }

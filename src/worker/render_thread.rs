@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::budget::Budget;
 use super::frame_pool::FramePool;
-use super::jobs::{Answer, Crew, Event, Frame, QueryJob, Question, StillJob, ThumbnailJob};
+use super::jobs::{
+    Answer, Crew, Event, Frame, LiveJob, QueryJob, Question, StillJob, ThumbnailJob,
+};
 use super::live::Live;
 use super::mailbox::Job;
 use super::shared::Shared;
@@ -101,16 +103,23 @@ fn run_job(
     control: &RenderControl,
 ) -> JobOutcome {
     match job {
-        Job::Live(job) => {
+        Job::Live(live) => {
             let start = Instant::now();
-            let mut live = Live {
-                shared,
-                job,
-                tracer: Tracer::planned(&job.scene, &job.request, &mut shared.planner()),
-                frame_pool: &mut kept.frame_pool,
-            };
-            live.run(control, &mut kept.budget, start);
-            JobOutcome::Ended
+            let traced = plan_live(shared, live, &mut kept.frame_pool).trace_centres(
+                control,
+                &mut kept.budget,
+                start,
+            );
+            if traced.is_none() || live.request.sampling == Sampling::Centres {
+                return JobOutcome::Ended;
+            }
+            *job = Job::Smooth(live.clone());
+            JobOutcome::Unfinished
+        }
+        Job::Smooth(live) => {
+            let start = Instant::now();
+            let traced = plan_live(shared, live, &mut kept.frame_pool).smooth(control, start);
+            traced.map_or(JobOutcome::Unfinished, |()| JobOutcome::Ended)
         }
         Job::Query(job) => answer(shared, job, kept, control),
         Job::Thumbnail(job) => thumbnail(shared, job),
@@ -123,6 +132,15 @@ fn run_job(
                 JobOutcome::Ended
             }
         }
+    }
+}
+
+fn plan_live<'a>(shared: &'a Shared, job: &'a LiveJob, frame_pool: &'a mut FramePool) -> Live<'a> {
+    Live {
+        shared,
+        job,
+        tracer: Tracer::planned(&job.scene, &job.request, &mut shared.planner()),
+        frame_pool,
     }
 }
 

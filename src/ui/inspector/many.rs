@@ -1,6 +1,6 @@
 //! The properties of several selected items: changes are made to all that have the property.
 
-use egui::{Id, Ui};
+use egui::{Id, Key, Ui};
 use glam::DVec3;
 
 use super::alike::{chosen_for_all, for_all, packs_of, values};
@@ -66,9 +66,13 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     if let Some(chosen) = chosen.filter(is_shared) {
         out.edit(chosen_for_all(scene, selected, chosen));
     }
-    // A group moves as a whole. Other items move together in a drag only: a click elsewhere that ends typing is
-    // none.
-    let is_together = group.is_some() || ui.input(|input| input.pointer.is_decidedly_dragging());
+    // A group moves as a whole. Other items move together in a drag or by steps only: a click elsewhere that ends
+    // typing is none.
+    let is_relative = ui.input(|input| {
+        let is_stepping = input.key_down(Key::ArrowUp) || input.key_down(Key::ArrowDown);
+        is_stepping || input.pointer.is_decidedly_dragging()
+    });
+    let is_together = group.is_some() || is_relative;
     for action in requests.actions {
         out.actions.push(match action {
             Action::Edit(edit) => match group.and_then(|_| transform_group(scene, selected, &edit))

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use egui::{DragAndDrop, Rect, Response, StrokeKind, Ui};
+use egui::{DragAndDrop, PointerButton, Rect, Response, StrokeKind, Ui};
 
 use super::lines::Group;
 use crate::editor::{Arrangement, Edit, Editor, Item, ItemKind, Selection};
@@ -35,7 +35,9 @@ pub fn accept_drop(
     (item, is_filtered): (Item, bool),
     out: &mut UiRequests,
 ) {
-    response.dnd_set_drag_payload(item);
+    if response.drag_started_by(PointerButton::Primary) {
+        DragAndDrop::set_payload(ui.ctx(), item);
+    }
     let Some(share) = share_of_row(ui, response) else {
         return;
     };
@@ -69,8 +71,8 @@ pub fn accept_drop_on_group(
     (group, is_folded): (&Group, bool),
     out: &mut UiRequests,
 ) {
-    if response.dragged() {
-        response.dnd_set_drag_payload(DraggedGroup(group.members.clone()));
+    if response.drag_started_by(PointerButton::Primary) {
+        DragAndDrop::set_payload(ui.ctx(), DraggedGroup(group.members.clone()));
     }
     let Some(share) = share_of_row(ui, response) else {
         return;

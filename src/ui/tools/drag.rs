@@ -193,8 +193,11 @@ impl Drag {
                 let found = before.picked(view.editor.scene(), &found);
                 let found = found.items();
                 if !response.dragged() {
-                    let items = before.items().iter().chain(found).copied();
-                    out.select(Selection::all(items));
+                    // Like a Shift-click, it only adds.
+                    if !found.is_empty() {
+                        let items = before.items().iter().chain(found).copied();
+                        out.select(Selection::all(items));
+                    }
                     return false;
                 }
                 show_marquee(view, marquee, (at, found.len()));

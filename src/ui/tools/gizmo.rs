@@ -75,11 +75,14 @@ impl DrawnHandle {
             // Dots take precedence over the lines that end in them.
             (Handle::Free | Handle::Corner(_), Some(dot)) => ((*dot - at).length() - 2.0).max(0.0),
             // So do arrow heads, which are drawn over what passes through them.
-            (Handle::Along(_) | Handle::Size, _) => {
+            (Handle::Along(_) | Handle::Size | Handle::Normal, _) => {
                 let head = self
                     .line
                     .last()
                     .map_or(f32::INFINITY, |tip| (*tip - at).length());
+                // The arrow of an axis in the same line is drawn over a normal.
+                let is_below = self.handle == Handle::Normal;
+                let nearest = nearest + if is_below { 0.5 } else { 0.0 };
                 nearest.min(head - HEAD_LENGTH)
             }
             _ => nearest,

@@ -140,8 +140,13 @@ impl Grip {
                 let start = target[axis];
                 let pulled = (to - self.grabbed_at.1).dot(direction);
                 target[axis] = typed.map_or_else(|| round(start + pulled), |by| start + by);
-                let words = format!("{name} {}", format_signed(target[axis] - start));
-                Some((self.move_to(target), words))
+                let by = typed.unwrap_or(target[axis] - start);
+                // A typed distance is exact for each item.
+                let edit = match typed {
+                    Some(by) => self.move_by(direction * by),
+                    None => self.move_to(target),
+                };
+                Some((edit, format!("{name} {}", format_signed(by))))
             }
             Handle::Across(_) | Handle::Free => {
                 let to = if pull.is_level && self.handle == Handle::Free {
@@ -210,7 +215,10 @@ impl Grip {
         if let [only] = &self.before[..] {
             return Some(only.placed(target));
         }
-        let by = target - self.snap_point();
+        self.move_by(target - self.snap_point())
+    }
+
+    fn move_by(&self, by: DVec3) -> Option<Edit> {
         self.edit_all("Move", |subject| subject.moved(by))
     }
 
@@ -272,7 +280,9 @@ impl Grip {
             return None;
         };
         let length = screen.unit_at(*point) * ARROW_LENGTH * RING_RADIUS;
-        let (origin, direction) = screen.ray(pull.at);
+        // Wherever the arrow was grabbed, its tip moves as the pointer does.
+        let tip = screen.place(*point + normal.normalize_or_zero() * length)?;
+        let (origin, direction) = screen.ray(pull.at + (tip - self.grabbed_at.0));
         let arm = *point - origin;
         let along = arm.dot(direction);
         let off = (arm - direction * along).length();

@@ -26,7 +26,7 @@ use glam::DVec3;
 use self::drag::{Drag, Pane};
 use self::gizmo::{Handle, handle_at};
 use self::navigate::dollied;
-use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question};
+use self::seen_objects::{SeenObjects, is_finite, item_of, pixel, question, with_group};
 use super::commands::Command;
 use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::pack_drag::{assign_pack_edit, dropped_pack};
@@ -97,11 +97,15 @@ impl Tools {
             return None;
         }
         // After the last thing, start again with the first.
-        match map.at(column, row) {
-            Some(next) => before.push(next),
-            None => before.truncate(1),
-        }
-        let item = item_of(*before.last()?);
+        let next = if let Some(next) = map.at(column, row) {
+            before.extend(with_group(editor.scene(), next));
+            next
+        } else {
+            let first = *before.first()?;
+            *before = with_group(editor.scene(), first);
+            first
+        };
+        let item = item_of(next);
         // Independent of what was selected on the way there.
         Some(Selection::default().picked(editor.scene(), &[item]))
     }
@@ -355,7 +359,8 @@ impl Tools {
             let is_same_click = (*before - at).length() < SAME_POSITION_DISTANCE && *of == revision;
             is_same_click && things.first() == Some(&first)
         });
-        let (at, _, before) = known.unwrap_or((at, revision, vec![first]));
+        let scene = view.editor.scene();
+        let (at, _, before) = known.unwrap_or_else(|| (at, revision, with_group(scene, first)));
         out.questions
             .push(question(view.editor, view.place, before.clone()));
         self.behind = Some((at, revision, before));

@@ -41,6 +41,20 @@ pub fn item_of(thing: Thing) -> Item {
     }
 }
 
+/// The thing, and after it the others of its group, which are selected with it.
+pub fn with_group(scene: &Scene, thing: Thing) -> Vec<Thing> {
+    let mut things = vec![thing];
+    if let Thing::Object(index) = thing
+        && let Some(group) = scene.objects.get(index).map(|object| &object.group)
+        && !group.is_empty()
+    {
+        let objects = scene.objects.iter().enumerate();
+        let others = objects.filter(|(other, object)| *other != index && object.group == *group);
+        things.extend(others.map(|(other, _)| Thing::Object(other)));
+    }
+    things
+}
+
 impl SeenObjects {
     /// Returns the question which objects are seen in the picture at `place`, unless it was already asked.
     pub fn request_map(&mut self, editor: &Editor, place: Place) -> Option<Question> {

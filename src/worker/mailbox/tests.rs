@@ -195,3 +195,34 @@ fn small_pictures_are_not_stopped() {
     mailbox.put(live(1));
     assert!(!control(&mailbox, Crew::Prompt).is_stopped());
 }
+
+#[test]
+fn smooth_edges_wait_for_questions_and_end_with_the_next_view() {
+    let smooth = |job: Option<Job>| match job {
+        Some(Job::Live(live) | Job::Smooth(live)) => Some(Job::Smooth(live)),
+        _ => panic!("a live view"),
+    };
+    let mut mailbox = Mailbox::default();
+    mailbox.put(live(1));
+    let traced = smooth(begin(&mut mailbox, Crew::Prompt));
+    mailbox.finish(Crew::Prompt, traced);
+    let running = begin(&mut mailbox, Crew::Prompt);
+    assert!(matches!(running, Some(Job::Smooth(_))));
+    mailbox.put(Job::Query(QueryJob {
+        scene: Arc::new(Scene::empty()),
+        question: Question::Visible(1, Box::default(), Vec::new()),
+    }));
+    assert!(control(&mailbox, Crew::Prompt).is_stopped());
+    mailbox.finish(Crew::Prompt, smooth(running));
+    let next = begin(&mut mailbox, Crew::Prompt);
+    assert!(matches!(next, Some(Job::Query(_))));
+    mailbox.finish(Crew::Prompt, None);
+    let running = begin(&mut mailbox, Crew::Prompt);
+    assert!(matches!(running, Some(Job::Smooth(_))));
+    mailbox.put(live(2));
+    mailbox.finish(Crew::Prompt, smooth(running));
+    let next = begin(&mut mailbox, Crew::Prompt);
+    assert!(matches!(next, Some(Job::Live(LiveJob { revision: 2, .. }))));
+    mailbox.finish(Crew::Prompt, None);
+    assert!(begin(&mut mailbox, Crew::Prompt).is_none());
+}

@@ -85,6 +85,10 @@ fn a_vector_is_pasted_whole_and_a_label_resets() {
         panic!("a sphere")
     };
     assert_eq!(center.to_array(), [1.0, -2.0, 3.5]);
+    // Thousands are no vector.
+    harness.type_into("center x", "1,250,000");
+    assert_eq!(harness.scene().objects[0].shape.position().x, 1.0);
+    harness.assert_says("is not a number");
     harness.type_into("radius", "7");
     harness.double_click("radius");
     assert_eq!(radius(harness.scene(), 0), 50.0);
@@ -443,6 +447,26 @@ fn escape_gives_the_drag_of_a_number_up() {
     assert_eq!(harness.scene(), &Scene::demo(), "it was let go");
     assert_eq!(harness.editor().undo_label(), None);
     assert_eq!(harness.editor().selection().items().len(), 1);
+}
+
+#[test]
+fn a_step_with_an_arrow_key_moves_several_together() {
+    let mut harness = EditorHarness::new();
+    harness.click("Sphere 1");
+    harness.click_with(CTRL, "Sphere 2");
+    let places = |harness: &EditorHarness| {
+        let objects = harness.scene().objects.iter();
+        objects
+            .take(2)
+            .map(|object| object.shape.position())
+            .collect::<Vec<_>>()
+    };
+    let before = places(&harness);
+    harness.put_cursor_into("center z");
+    harness.press(Modifiers::NONE, Key::ArrowUp);
+    let after = places(&harness);
+    assert!(after[1].z > before[1].z);
+    assert!((after[0] - before[0]).abs_diff_eq(after[1] - before[1], 1e-9));
 }
 
 #[test]

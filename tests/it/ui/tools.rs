@@ -4,7 +4,7 @@ use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, ViewportC
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glam::DVec3;
 use glint::editor::{Item, Selection};
-use glint::scene::{Projection, Scene, Shape, Sphere, Triangle};
+use glint::scene::{Disc, Projection, Scene, Shape, Sphere, Triangle};
 
 use crate::harness::{CTRL, EditorHarness, radius};
 
@@ -122,6 +122,21 @@ fn alt_click_selects_what_is_behind() {
 }
 
 #[test]
+fn alt_click_selects_what_is_behind_a_whole_group() {
+    let mut scene = Scene::demo();
+    for ball in 0..2 {
+        scene.objects[ball].group = "g".to_owned();
+    }
+    let mut harness = EditorHarness::on(scene);
+    let [front, back] = [1, 0].map(|object| place(&harness, center(harness.scene(), object)));
+    let at = front + (back - front) * 0.41;
+    click(&mut harness, at, Modifiers::ALT);
+    assert_eq!(harness.selected(), ["Plane"]);
+    click(&mut harness, at, Modifiers::ALT);
+    assert_eq!(harness.selected(), ["Sphere 1", "Sphere 2"]);
+}
+
+#[test]
 fn a_body_is_dragged_in_one_step_and_escape_takes_it_back() {
     let mut harness = EditorHarness::new();
     let before = center(harness.scene(), 0);
@@ -217,6 +232,42 @@ fn an_arrow_moves_along_its_axis_and_takes_typed_values() {
     harness.press(NONE, Key::Enter);
     drop_at(&mut harness, to, PointerButton::Primary, NONE);
     assert_eq!(center(harness.scene(), 0) - before, DVec3::Y * -1.5);
+}
+
+#[test]
+fn an_arrow_over_a_normal_moves_and_a_normal_turns_from_where_it_is() {
+    let upright = DVec3::Y;
+    for normal in [upright, DVec3::new(0.6, 0.8, 0.0)] {
+        let mut scene = Scene::demo();
+        let middle = center(&scene, 0);
+        scene.objects[0].shape = Disc {
+            center: middle,
+            normal,
+            radius: 30.0,
+        }
+        .into();
+        let mut harness = EditorHarness::on(scene);
+        harness.click("Sphere 1");
+        let unit = harness.view().height();
+        let camera = &harness.scene().camera;
+        let depth = (middle - camera.position).dot(camera.look_at.normalize());
+        let length = depth / camera.projection_distance / f64::from(unit) * 76.0;
+        let from = place(&harness, middle + normal * length * 0.6);
+        let to = from + vec2(0.0, -8.0);
+        drag(&mut harness, from, to, PointerButton::Primary, NONE);
+        let Shape::Disc(disc) = &harness.scene().objects[0].shape else {
+            panic!("a disc");
+        };
+        if normal == upright {
+            assert!(disc.center.y > middle.y && disc.normal == normal);
+        } else {
+            let turned = disc.normal.angle_between(normal).to_degrees();
+            assert!(
+                disc.center == middle && 0.0 < turned && turned < 20.0,
+                "{turned}"
+            );
+        }
+    }
 }
 
 #[test]
