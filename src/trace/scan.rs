@@ -11,7 +11,7 @@ use super::thin_margin::ThinMargin;
 use super::walk::{Stack, TreeVisitor, walk, walk_thin};
 use crate::plan::{Child, CulledFaces, Geometry, PackedMesh, Plan};
 use crate::primitive::{Blur, Kind, Prepared, Primitive, Ray, Visit, WithPrepared};
-use crate::simd::{Mask as _, SimdFloat, Vec3};
+use crate::simd::{Mask as _, Real as _, SimdFloat, Vec3};
 
 /// A test to run on many primitives.
 pub trait Test<L: SimdFloat> {
@@ -48,10 +48,18 @@ pub trait Test<L: SimdFloat> {
         _ball: (Vec3<L::Real>, L::Real),
         _thickness: L::Real,
         _paths: &Paths<L>,
-        _active: L::Mask,
+        (_active, _passing): (L::Mask, L::Mask),
     ) -> u64 {
         0
     }
+
+    /// The margin of each ray by itself, see [`TreeVisitor::own_margin`].
+    fn own_margin(&self) -> Option<ThinMargin<L>> {
+        None
+    }
+
+    /// Sets for which rays the tests that follow count, because they pass a box closely; `None` for all.
+    fn count_only(&mut self, _passing: Option<L::Mask>) {}
 
     /// Sets the rays, bit by bit, that are excluded from the tests that follow. Returns those excluded so far.
     fn exclude_lanes(&mut self, _merged_lanes: u64) -> u64 {
@@ -197,10 +205,20 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn visit_merged_box(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
-        let active = self.tree_scan.active;
+    fn visit_merged_box(
+        &mut self,
+        ball: (Vec3<L::Real>, L::Real),
+        thickness: L::Real,
+        passing: L::Mask,
+    ) -> u64 {
+        let lanes = (self.tree_scan.active, passing);
         self.test
-            .test_merged_box(ball, thickness, self.paths, active)
+            .test_merged_box(ball, thickness, self.paths, lanes)
+    }
+
+    #[inline(always)]
+    fn own_margin(&self) -> ThinMargin<L> {
+        own_margin(self.test)
     }
 
     #[inline(always)]
@@ -301,15 +319,52 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn visit_merged_box(&mut self, ball: (Vec3<L::Real>, L::Real), thickness: L::Real) -> u64 {
+    fn is_sliced(&self, member: u32) -> bool {
+        self.mesh.triangles[member as usize].slicing.count() > 1
+    }
+
+    #[inline(always)]
+    fn visit_slice(&mut self, member: u32, passing: L::Mask) {
+        let (index, prepared) = (member as usize, &self.prepared.triangles);
+        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
+        self.test.count_only(Some(passing));
+        self.test.test(triangle, prepared, self.paths, number);
+        self.test.count_only(None);
+    }
+
+    #[inline(always)]
+    fn visit_merged_box(
+        &mut self,
+        ball: (Vec3<L::Real>, L::Real),
+        thickness: L::Real,
+        passing: L::Mask,
+    ) -> u64 {
+        let lanes = (self.active, passing);
         self.test
-            .test_merged_box(ball, thickness, self.paths, self.active)
+            .test_merged_box(ball, thickness, self.paths, lanes)
+    }
+
+    #[inline(always)]
+    fn own_margin(&self) -> ThinMargin<L> {
+        own_margin(self.test)
     }
 
     #[inline(always)]
     fn exclude_lanes(&mut self, merged_lanes: u64) {
         self.test.exclude_lanes(merged_lanes);
     }
+}
+
+#[inline(always)]
+fn own_margin<L: SimdFloat>(test: &impl Test<L>) -> ThinMargin<L> {
+    let zero = test.reach().like(L::Real::ZERO);
+    test.own_margin().unwrap_or(ThinMargin {
+        width: zero,
+        spread: zero,
+        max_thickness: zero,
+        narrowing: zero,
+        min_width: zero,
+    })
 }
 
 #[inline(always)]

@@ -149,6 +149,8 @@ struct ThinTest<'a, L: SimdFloat> {
     /// the primitive still counts.
     merged_lanes: u64,
     unmerged_lanes: L::Mask,
+    /// The rays that pass the box closely in which the primitive is tested.
+    passing: L::Mask,
 }
 
 /// How rays pass a ball.
@@ -176,6 +178,7 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
             cone: query.cone,
             merged_lanes: 0,
             unmerged_lanes: all,
+            passing: all,
         }
     }
 
@@ -206,7 +209,8 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
         let thin = size.less(width * to.like_f64(THIN_WIDTH)) & zero.less(to) & is_before;
-        (thin & self.face_lanes & self.unmerged_lanes, width)
+        let lanes = self.face_lanes & self.unmerged_lanes & self.passing;
+        (thin & lanes, width)
     }
 
     /// Notes a ball that is `distance` away from the rays, where it counts.
@@ -272,7 +276,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         (center, radius): (Vec3<L::Real>, L::Real),
         thickness: L::Real,
         paths: &Paths<L>,
-        active: L::Mask,
+        (active, passing): (L::Mask, L::Mask),
     ) -> u64 {
         let ball = self.approach_ball(center, radius, paths);
         let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
@@ -281,9 +285,31 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             .like(thickness)
             .less(width * width.like_f64(THIN_WIDTH));
         let is_in_reach = zero.less(ball.along) & ball.along.less(self.query.reach + width);
-        let counts = is_merged & is_thin & is_in_reach & self.face_lanes & self.unmerged_lanes;
+        let lanes = self.face_lanes & self.unmerged_lanes & passing;
+        let counts = is_merged & is_thin & is_in_reach & lanes;
         self.note(&ball, counts, ball.off - ball.radius);
         (is_merged | !active).bits()
+    }
+
+    #[inline(always)]
+    fn own_margin(&self) -> Option<ThinMargin<L>> {
+        let ThinQuery {
+            cone, in_meshes, ..
+        } = self.query;
+        let zero = cone.spread.like(L::Real::ZERO);
+        Some(ThinMargin {
+            width: cone.width,
+            spread: cone.spread.max(zero),
+            max_thickness: zero.like_f64(THIN_WIDTH),
+            narrowing: (-cone.spread).max(zero),
+            min_width: in_meshes.width,
+        })
+    }
+
+    #[inline(always)]
+    fn count_only(&mut self, passing: Option<L::Mask>) {
+        let all = self.query.active | !self.query.active;
+        self.passing = passing.unwrap_or(all);
     }
 
     #[inline(always)]

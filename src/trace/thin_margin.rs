@@ -7,6 +7,10 @@ use crate::simd::{Real, SimdFloat};
 /// Greatest distance before a box, in widths of a pixel, at which a ray may pass what is in it; discs need the most.
 const APPROACH_WIDTHS: f64 = 4.0;
 
+/// Share of the width of a pixel around a packet that counts for a ray by itself: a packet of one ray then finds all
+/// that counts for it, although it computes the width in another order.
+const OWN_SHARE: f64 = 0.999;
+
 /// Upper bound of the width of a pixel around rays, and how thick the things are that are looked for.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ThinMargin<R> {
@@ -20,6 +24,21 @@ pub struct ThinMargin<R> {
     pub narrowing: R,
     /// Least width in spite of narrowing, in scene units.
     pub min_width: R,
+}
+
+impl<L: SimdFloat> ThinMargin<L> {
+    /// Returns the largest width of a pixel of each ray around a box, given an upper and a lower bound of its distance:
+    /// what [`Self::narrowed`] is for a packet.
+    #[inline(always)]
+    pub fn own_width(&self, farthest: L, nearest: L) -> L {
+        let zero = nearest.like(L::Real::ZERO);
+        let width = farthest * self.spread + self.width;
+        let certain_distance =
+            nearest * nearest.like_f64(1.0 - CAUTION) - width * nearest.like_f64(APPROACH_WIDTHS);
+        let narrowed = width - certain_distance.max(zero) * self.narrowing;
+        let narrowed = narrowed.max(self.min_width);
+        L::select(zero.less(self.narrowing), narrowed, width) * nearest.like_f64(OWN_SHARE)
+    }
 }
 
 impl<R: Real> ThinMargin<R> {

@@ -33,11 +33,26 @@ pub trait TreeVisitor<L: SimdFloat> {
     }
     /// Visits a member; `width` is the largest width of a pixel there, if things beside the rays are looked for.
     fn visit_member(&mut self, member: u32, width: L::Real, stack: &mut Stack<L::Real>);
+    /// Returns whether a member has several boxes in the tree.
+    fn is_sliced(&self, _member: u32) -> bool {
+        false
+    }
+    /// Visits a member in one of its boxes for the rays that pass that box closely. The other rays pass it in another
+    /// of its boxes, which they may see as one thing with what else is there.
+    fn visit_slice(&mut self, _member: u32, _passing: L::Mask) {}
     /// Visits a box for the rays that see its contents as one thing, given the ball around it and the thickness of
-    /// its contents. Returns these rays and those that are not active, bit by bit.
-    fn visit_merged_box(&mut self, _ball: (Vec3<L::Real>, L::Real), _thickness: L::Real) -> u64 {
+    /// its contents; it counts for those that pass it closely. Returns the first and those that are not active, bit
+    /// by bit.
+    fn visit_merged_box(
+        &mut self,
+        _ball: (Vec3<L::Real>, L::Real),
+        _thickness: L::Real,
+        _passing: L::Mask,
+    ) -> u64 {
         0
     }
+    /// The margin of each ray by itself, if things beside the rays are looked for.
+    fn own_margin(&self) -> ThinMargin<L>;
     /// Sets the rays, bit by bit, that are excluded from everything that is visited from now on.
     fn exclude_lanes(&mut self, _merged_lanes: u64) {}
 }
@@ -148,6 +163,7 @@ pub fn walk_thin<L: SimdFloat>(
     let bottom = stack.len();
     let reach = visitor.reach();
     let (token, farthest, shaft) = (reach.token(), reach.greatest(), bundle.shaft());
+    let own_margin = visitor.own_margin();
     let mut index = 0;
     while let Some(node) = bvh.nodes.get(index as usize) {
         let mut widths = [L::Real::ZERO; GROUP];
@@ -165,13 +181,22 @@ pub fn walk_thin<L: SimdFloat>(
                 continue;
             }
             match node.child(slot as usize) {
+                Child::Member(member) if visitor.is_sliced(member) => {
+                    let slot = slot as usize;
+                    let passing = bundle.lanes_passing_box(node, slot, reach, &own_margin);
+                    if passing.any() {
+                        visitor.visit_slice(member, passing);
+                    }
+                }
                 Child::Member(member) => visitor.visit_member(member, width, stack),
                 Child::Node(inner) => {
                     let mut merged_lanes = merged_lanes;
                     let ball = node.bounds(slot as usize).ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
                         let thickness = L::Real::from_single(node.thickness[slot as usize]);
-                        merged_lanes |= visitor.visit_merged_box(ball, thickness);
+                        let slot = slot as usize;
+                        let passing = bundle.lanes_passing_box(node, slot, reach, &own_margin);
+                        merged_lanes |= visitor.visit_merged_box(ball, thickness, passing);
                     }
                     if merged_lanes & all != all {
                         stack.push(StackEntry {
