@@ -35,12 +35,13 @@ pub fn watertight_in_doubt<L: SimdFloat>(
         return None;
     }
     let is_surely_hit = bound.less(low) | high.less(-bound);
-    let t = shear.distance(corners, edges);
+    // By the plane: weights of corners far apart, as a narrow triangle has them, amplify the rounding of its edges.
+    let normal = ray.origin.like(triangle.normal);
+    let height = normal.dot(ray.origin.like(triangle.corners[0]) - ray.origin);
+    let t = height / normal.dot(ray.direction);
     let inside = zero.at_most(low) | high.at_most(zero);
     let distance = L::select(inside & zero.less(t), t, infinity);
     // For rays that run along the triangle, a small height is decisive over a long distance.
-    let normal = ray.origin.like(triangle.normal);
-    let height = t * normal.dot(ray.direction);
     let starts_on_it = is_surely_hit & height.abs().at_most(blur.at(longest));
     let start_doubt = L::select(starts_on_it, zero, infinity);
     let passes_edge = wanted & !is_surely_missed & !is_surely_hit;
