@@ -139,6 +139,20 @@ fn boards(seed: u64) -> Scene {
     })
 }
 
+/// Boxes as long and thin as wires: rounding must not decide which of two sides that are hardly apart is nearer.
+fn wires(seed: u64) -> Scene {
+    let salt = seed.wrapping_mul(4_001) + 13;
+    scatter(random::scene(seed), (6, salt), |vector| {
+        let thickness = 0.03 + vector(0.1).x.abs();
+        Mesh {
+            position: vector(50.0),
+            rotation: vector(180.0),
+            scale: DVec3::new(100.0, thickness, thickness),
+            ..Mesh::of((SOLIDS[0].make)(1.0))
+        }
+    })
+}
+
 /// Many discs with several color packs over a floor that ends at the horizon.
 fn discs(seed: u64) -> Scene {
     let salt = seed.wrapping_mul(5_003) + 7;
@@ -195,7 +209,7 @@ fn ring(tube: f64) -> Triangles {
 
 #[test]
 fn the_filtered_picture_is_that_of_double_precision() {
-    let kinds: [fn(u64) -> Scene; 8] = [
+    let kinds: [fn(u64) -> Scene; 9] = [
         random::scene,
         |seed| mirroring(random::with_discs(seed)),
         |seed| mirroring(with_solids(seed)),
@@ -204,6 +218,7 @@ fn the_filtered_picture_is_that_of_double_precision() {
         boxes,
         discs,
         boards,
+        wires,
     ];
     let alone = kinds.map(|kind| wrong((0..SCENES).map(kind)));
     // Single precision alone gets pixels wrong.

@@ -4,10 +4,11 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 use glint::image::Image;
+use glint::mesh::Triangles;
 use glint::plan::RenderRequest;
 use glint::scene::{
-    Document, HighlightMethod, Method as _, Methods, Plane, Precision, Projection, RayOffset,
-    Sampling, Scene, Shape, Sphere, SphereMethod, TriangleMethod,
+    Document, HighlightMethod, Mesh, Method as _, Methods, Object, Plane, Precision, Projection,
+    RayOffset, Sampling, Scene, Shape, Sphere, SphereMethod, TriangleMethod,
 };
 use glint::simd::Level;
 use glint::trace::{Grid, Pass, Rays, RenderControl, Threads, Tracer};
@@ -136,6 +137,57 @@ fn what_a_ray_finds_beside_itself_depends_on_no_other_ray_of_its_packet() {
             picture(&scene, &request)
         });
         assert!(alone == together, "{rest}");
+    }
+}
+
+/// A mesh of thin tubes over a floor, whose faces have several boxes each.
+fn tubes(salt: u32) -> Scene {
+    const COUNT: u32 = 30;
+    let text = r#"Scene(version: 1, light_visualization: false,
+        color_packs: {"a": ColorPack(ambient: (200, 150, 90), diffuse: (200, 150, 90))},
+        camera: Camera(position: (1.7, 2.5, 5.4), look_at: (0.15, -0.1, -1), projection_distance: 1.2),
+        objects: [Object(name: "Floor", color_pack: "a", shape: Plane(point: (0, 0, 0), normal: (0, 1, 0)))],
+        lights: [Light(name: "Lamp", position: (-5, 3.8, 6.7), intensity: 0.6)])"#;
+    let mut scene = Document::from_text(text).expect("a scene").scene;
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for tube in 0..COUNT {
+        let wave = |speed: f64| (f64::from(tube + 1 + salt * COUNT) * speed).sin();
+        let middle = DVec3::new(
+            wave(1.7) * 3.0,
+            3.0 + wave(2.3) * 3.0,
+            wave(3.1) * 6.0 - 6.0,
+        );
+        let angle = wave(4.7) * std::f64::consts::PI;
+        let along = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let (across, half) = (DVec3::new(-along.y, along.x, 0.0), 2.5 + 1.5 * wave(5.9));
+        let first = points.len() as u32;
+        for end in [-half, half] {
+            for side in [across, DVec3::Z, -across, -DVec3::Z] {
+                points.push(middle + along * end + side * 0.01);
+            }
+        }
+        for side in 0..4 {
+            let [a, b] = [side, (side + 1) % 4].map(|side| first + side);
+            faces.extend([[a, b, a + 4], [b, b + 4, a + 4]]);
+        }
+    }
+    let tubes = Mesh::of(Triangles::new(points, faces).expect("tubes"));
+    scene.objects.push(Object::new("Tubes", "a", tubes));
+    scene
+}
+
+#[test]
+fn faces_with_several_boxes_count_alike_whatever_the_packet() {
+    for salt in 0..6 {
+        let [alone, together] = [Level::SINGLE, Level::widest()].map(|level| {
+            let request = RenderRequest {
+                sampling: Sampling::ADAPTIVE,
+                level: Some(level),
+                ..RenderRequest::sized(96, 96)
+            };
+            picture(&tubes(salt), &request)
+        });
+        assert!(alone == together, "{salt}");
     }
 }
 
