@@ -53,6 +53,8 @@ pub struct Bvh<R> {
     pub bounds: BoundingBox<R>,
     /// The smallest thickness of any member.
     pub thinnest: R,
+    /// Whether members have several boxes.
+    pub is_sliced: bool,
     /// Half of the total surface area of all boxes when the tree was built.
     built_surface: f64,
 }
@@ -231,6 +233,7 @@ impl<R: Real> Bvh<R> {
         drop(boxes);
         let nodes = groups.into_iter().map(node).collect();
         let mut bvh = Self {
+            is_sliced: (0..count).any(|entry| slice(entry).1 > 0),
             nodes,
             bounds: BoundingBox::nothing(),
             thinnest: R::INFINITY,
@@ -309,6 +312,7 @@ impl<R: Real> Bvh<R> {
                 high: high.in_precision(),
             },
             thinnest: S::from_f64(self.thinnest.to_f64()),
+            is_sliced: self.is_sliced,
             built_surface: self.built_surface,
         }
     }

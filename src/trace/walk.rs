@@ -181,7 +181,7 @@ pub fn walk_thin<L: SimdFloat>(
                 continue;
             }
             match node.child(slot as usize) {
-                Child::Member(member) if visitor.is_sliced(member) => {
+                Child::Member(member) if bvh.is_sliced && visitor.is_sliced(member) => {
                     let slot = slot as usize;
                     let passing = bundle.lanes_passing_box(node, slot, reach, &own_margin);
                     if passing.any() {
@@ -195,7 +195,11 @@ pub fn walk_thin<L: SimdFloat>(
                     if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
                         let thickness = L::Real::from_single(node.thickness[slot as usize]);
                         let slot = slot as usize;
-                        let passing = bundle.lanes_passing_box(node, slot, reach, &own_margin);
+                        let passing = if bvh.is_sliced {
+                            bundle.lanes_passing_box(node, slot, reach, &own_margin)
+                        } else {
+                            bundle.active
+                        };
                         merged_lanes |= visitor.visit_merged_box(ball, thickness, passing);
                     }
                     if merged_lanes & all != all {
