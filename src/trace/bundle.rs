@@ -16,9 +16,9 @@ pub struct Bundle<L: SimdFloat> {
     /// The lanes that have a ray.
     pub active: L::Mask,
     /// The origins, shifted by their rounding errors towards lower and higher coordinates.
-    origins: [Vec3<L>; 2],
+    pub origins: [Vec3<L>; 2],
     /// The reciprocals of the directions.
-    inverse: Vec3<L>,
+    pub inverse: Vec3<L>,
     /// The intervals that contain all of the rays.
     shaft: Shaft<L::Real>,
     /// Whether boxes that no ray meets are skipped.
@@ -118,51 +118,6 @@ impl<L: SimdFloat> Bundle<L> {
             shaft: self.shaft.seen_from(centre),
             ..*self
         }
-    }
-
-    /// Returns which rays by themselves pass the box at `index` of a node closely enough for something thin in it to
-    /// count, whatever other rays are in the packet.
-    #[inline(always)]
-    pub fn lanes_passing_box(
-        &self,
-        node: &Node,
-        index: usize,
-        reach: L,
-        margin: &ThinMargin<L>,
-    ) -> L::Mask {
-        let zero = reach.like(L::Real::ZERO);
-        let [below, above] = &self.origins;
-        let origins = [
-            (below.x, above.x, self.inverse.x),
-            (below.y, above.y, self.inverse.y),
-            (below.z, above.z, self.inverse.z),
-        ];
-        let planes = |axis: usize| {
-            let [low, high] = [0, 1].map(|side: usize| node.planes[side][axis][index]);
-            (
-                reach.like(L::Real::from_single(low)),
-                reach.like(L::Real::from_single(high)),
-            )
-        };
-        let (mut farthest, mut nearest) = (zero, zero);
-        for (axis, (below, above, _)) in origins.into_iter().enumerate() {
-            let (low, high) = planes(axis);
-            farthest = farthest + (high - below).max(above - low).max(zero);
-            nearest = nearest.max((low - above).max(below - high));
-        }
-        let width = margin.own_width(farthest, nearest);
-        let mut near = zero;
-        let mut far = reach + width * (margin.max_thickness + reach.like(L::Real::ONE));
-        for (axis, (below, above, inverse)) in origins.into_iter().enumerate() {
-            let (low, high) = planes(axis);
-            let (low, high) = (low - width, high + width);
-            let (low, high) = ((low - above) * inverse, (high - below) * inverse);
-            near = near.max(low.min(high));
-            far = far.min(low.max(high));
-        }
-        let thickness = reach.like(L::Real::from_single(node.thickness[index]));
-        let is_thin = thickness.less(width * margin.max_thickness);
-        is_thin & near.at_most(far) & self.active
     }
 
     /// The intervals that contain all of the rays.

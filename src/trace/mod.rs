@@ -22,6 +22,8 @@ mod thin_margin;
 
 mod bundle;
 
+mod passing;
+
 mod entry_points;
 
 mod thin_cull;

@@ -1,6 +1,7 @@
 //! Traversal of a tree of boxes by a packet, nearest boxes first.
 
 use super::bundle::Bundle;
+use super::passing::lanes_passing_box;
 use super::thin_margin::ThinMargin;
 use super::thresholds::MERGED_SIZE;
 use crate::plan::{Bvh, Child, GROUP, Node};
@@ -183,7 +184,7 @@ pub fn walk_thin<L: SimdFloat>(
             match node.child(slot as usize) {
                 Child::Member(member) if bvh.is_sliced && visitor.is_sliced(member) => {
                     let slot = slot as usize;
-                    let passing = bundle.lanes_passing_box(node, slot, reach, &own_margin);
+                    let passing = lanes_passing_box(bundle, node, slot, reach, &own_margin);
                     if passing.any() {
                         visitor.visit_slice(member, passing);
                     }
@@ -196,7 +197,7 @@ pub fn walk_thin<L: SimdFloat>(
                         let thickness = L::Real::from_single(node.thickness[slot as usize]);
                         let slot = slot as usize;
                         let passing = if bvh.is_sliced {
-                            bundle.lanes_passing_box(node, slot, reach, &own_margin)
+                            lanes_passing_box(bundle, node, slot, reach, &own_margin)
                         } else {
                             bundle.active
                         };
