@@ -38,7 +38,7 @@ pub fn read_whole_document(path: &Path) -> Result<Document, CliError> {
     }
 }
 
-/// A message for each mesh file that could not be read, up to [`MAX_MESSAGES`], at the place of the first object that
+/// A message for each mesh file that could not be read, up to 100 of them, at the place of the first object that
 /// needs it; `consequence` is added to what is said of that.
 pub fn missing_meshes(path: &Path, scene: &Scene, consequence: &str) -> Vec<String> {
     let mut files: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
