@@ -29,7 +29,7 @@ pub const MAX_BYTES: u64 = 256 << 20;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// Version of the file format, see [`VERSION`].
+    /// Version of the file format, which is 1 so far.
     pub version: u32,
     /// Colour of a ray that hits nothing, 0–255.
     #[serde(default)]
