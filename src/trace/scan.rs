@@ -313,9 +313,7 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
 
     #[inline(always)]
     fn visit_member(&mut self, member: u32, _width: L::Real, _stack: &mut Stack<L::Real>) {
-        let (index, prepared) = (member as usize, &self.prepared.triangles);
-        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
-        self.test.test(triangle, prepared, self.paths, number);
+        self.test_face(member as usize);
     }
 
     #[inline(always)]
@@ -325,10 +323,8 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
 
     #[inline(always)]
     fn visit_slice(&mut self, member: u32, passing: L::Mask) {
-        let (index, prepared) = (member as usize, &self.prepared.triangles);
-        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
         self.test.count_only(Some(passing));
-        self.test.test(triangle, prepared, self.paths, number);
+        self.test_face(member as usize);
         self.test.count_only(None);
     }
 
@@ -352,6 +348,15 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     #[inline(always)]
     fn exclude_lanes(&mut self, merged_lanes: u64) {
         self.test.exclude_lanes(merged_lanes);
+    }
+}
+
+impl<L: SimdFloat, T: Test<L>> FaceVisitor<'_, L, T> {
+    #[inline(always)]
+    fn test_face(&mut self, index: usize) {
+        let (triangle, prepared) = (&self.mesh.triangles[index], &self.prepared.triangles);
+        self.test
+            .test(triangle, prepared, self.paths, self.first + index);
     }
 }
 
