@@ -6,8 +6,8 @@ use super::error::CliError;
 use crate::scene::MAX_SIDE;
 use crate::trace::{PoolError, Threads};
 
-/// Most threads: more than any machine has cores.
-const MAX_THREADS: u32 = 256;
+/// Most threads: more than any machine has cores, so that a larger number is a mistake.
+const MAX_THREADS: u32 = 4096;
 
 /// Most repetitions: more than anyone would wait for.
 pub const MAX_TIMES: u32 = 1_000_000;

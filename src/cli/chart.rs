@@ -38,7 +38,6 @@ const BAR_STEPS: u64 = 1000;
 #[derive(Debug, Args)]
 pub struct ChartArgs {
     /// Scene files (RON); several are charted in one picture with the same axes
-    #[arg(required_unless_present = "growth")]
     scenes: Vec<PathBuf>,
     /// Instead of the chart, measure how time grows with the number of primitives, in generated scenes
     #[arg(long, conflicts_with_all = ["scenes", "within", "budget"])]
@@ -121,6 +120,9 @@ impl ChartArgs {
 pub fn run(args: &ChartArgs) -> Result<CliAction, CliError> {
     // A bad file name is reported before anything is traced.
     picture_format(args.png.as_deref())?;
+    if args.scenes.is_empty() && !args.growth {
+        return Err(CliError::usage("name scene files, or use --growth"));
+    }
     args.check_size()?;
     check_table(args.csv.as_deref())?;
     if let Some(path) = &args.csv

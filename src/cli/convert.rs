@@ -103,12 +103,10 @@ fn write_scene(args: &ConvertArgs) -> Result<(), CliError> {
     })?;
     let objects = scene.objects.len();
     let faces: usize = scene.faces();
-    let backup = Document::of(scene).save(&output);
+    let backup = Document::of(scene).save_over(&output);
     if let Some(backup) = backup.map_err(CliError::failed)? {
         let (name, backup) = (args.output.display(), backup.display());
-        report_warning(&format!(
-            "the previous {name} had comments, and is kept as {backup}"
-        ));
+        report_warning(&format!("the previous {name} is kept as {backup}"));
     }
     say(&format!(
         "{}: {}, {}",

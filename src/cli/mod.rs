@@ -117,7 +117,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> CliAction {
 fn run_words(words: Vec<OsString>) -> Result<CliAction, CliError> {
     let done = |()| CliAction::Done(ExitCode::SUCCESS);
     if let Some(name) = unknown_command(&words) {
-        if Path::new(&name).is_file() {
+        if !is_word(Path::new(&name)) || Path::new(&name).is_file() {
             let sentence = format!("the editor opens one scene: remove what follows {name:?}");
             return Err(CliError::usage(sentence));
         }
@@ -206,15 +206,19 @@ fn has_colors() -> bool {
     variable("NO_COLOR").is_empty() && variable("TERM") != "dumb"
 }
 
+/// Returns whether a path is a bare name, without folder and extension.
+fn is_word(path: &Path) -> bool {
+    path.components().count() == 1 && path.extension().is_none()
+}
+
 /// Returns the first argument if it was probably meant as a command that does not exist: it is followed by another
-/// word, or it is a bare name without folder and extension, and no such file exists.
+/// word, or it is a bare name and no such file exists.
 fn unknown_command(words: &[OsString]) -> Option<String> {
     let is_plain = |word: &OsString| !word.to_string_lossy().starts_with('-');
     let [_, first, others @ ..] = words else {
         return None;
     };
     let is_command = CliArgs::command().find_subcommand(first).is_some() || first == "help";
-    let is_word = |path: &Path| path.components().count() == 1 && path.extension().is_none();
     let looks_like_command = others.first().is_some_and(is_plain)
         || (is_word(Path::new(first)) && !Path::new(first).exists());
     (is_plain(first) && looks_like_command && !is_command)

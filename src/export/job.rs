@@ -6,9 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
-use super::save::{check_writable, disk_error, write_text};
+use super::save::{check_writable, disk_error};
 use super::sequence::Sequence;
-use crate::files::{back_up, is_same_file, read_file, write_atomic};
+use crate::files::{is_same_file, replace};
 use crate::scene::{Document, SceneError};
 
 /// Most characters of a job's name: Open Job Description, template schemas 2023-09, `<JobName>`.
@@ -95,20 +95,17 @@ pub fn write_job(
     } else {
         None
     };
-    let mut replaced: Vec<_> = backup
-        .map(|backup| (scene.clone(), backup))
-        .into_iter()
-        .collect();
+    let scene_backup = backup.map(|backup| (scene.clone(), backup));
     // An older template written by Glint is overwritten without a backup.
-    if read_file(path).is_ok_and(|existing| !is_template(&String::from_utf8_lossy(&existing))) {
-        let backup = back_up(path).map_err(|source| disk_error(path, source))?;
-        replaced.push((path.to_owned(), backup));
-    }
-    write_text(path, &job_template(sequence, &stem, &name))?;
+    let is_edited = |existing: &[u8]| !is_template(&String::from_utf8_lossy(existing));
+    let text = job_template(sequence, &stem, &name);
+    let backup = replace(path, text.as_bytes(), is_edited);
+    let backup = backup.map_err(|source| disk_error(path, source))?;
+    let template_backup = backup.map(|backup| (path.to_owned(), backup));
     Ok(JobFiles {
         scene,
         is_copied,
-        replaced,
+        replaced: scene_backup.into_iter().chain(template_backup).collect(),
     })
 }
 
@@ -129,11 +126,7 @@ fn write_scene(
         Document::check_length(path, &text)?;
         text.into_bytes()
     };
-    let differs = read_file(path).is_ok_and(|existing| existing != text);
-    let backup = differs.then(|| back_up(path)).transpose();
-    let backup = backup.map_err(disk_error)?;
-    write_atomic(path, &text).map_err(disk_error)?;
-    Ok(backup)
+    Ok(replace(path, &text, |_| true).map_err(disk_error)?)
 }
 
 /// Returns a job name for a scene of this name. Double braces are broken up, as they delimit what the farm

@@ -361,7 +361,7 @@ pub fn by_povray(
         .spawn();
     let mut child = run.map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => PovrayError::Missing,
-        _ => disk(Path::new("povray"))(source),
+        _ => PovrayError::Failed(format!("it cannot be started: {source}")),
     })?;
     let is_wanted = || !control.is_stopped();
     let status = wait_for_exit(&mut child, is_wanted).map_err(disk(Path::new("povray")))?;

@@ -56,7 +56,17 @@ impl Video {
 
     /// Whether making it needs ffmpeg.
     pub fn needs_ffmpeg(self) -> bool {
-        !matches!(self, Self::Gif | Self::Apng)
+        self.codec().is_some()
+    }
+
+    /// The codec with which ffmpeg makes it; `None` if it is made without ffmpeg.
+    fn codec(self) -> Option<&'static str> {
+        match self {
+            Self::H264 => Some(H264),
+            Self::ProRes => Some(PRORES),
+            Self::Lossless => Some(LOSSLESS),
+            Self::Gif | Self::Apng => None,
+        }
     }
 
     /// The format with this extension, in any case.
@@ -94,13 +104,10 @@ impl Video {
     ) -> Result<(), VideoError> {
         let before = sequence.manifest()?;
         let new_file = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
-        let ffmpeg_target = || (new_file.lend(), path);
-        match self {
-            Self::Gif => gif(sequence, (new_file.as_file(), path), &mut go_on)?,
-            Self::Apng => apng(sequence, (new_file.as_file(), path), &mut go_on)?,
-            Self::H264 => make_with_ffmpeg(sequence, ffmpeg_target(), H264, &mut go_on)?,
-            Self::ProRes => make_with_ffmpeg(sequence, ffmpeg_target(), PRORES, &mut go_on)?,
-            Self::Lossless => make_with_ffmpeg(sequence, ffmpeg_target(), LOSSLESS, &mut go_on)?,
+        match self.codec() {
+            Some(codec) => make_with_ffmpeg(sequence, (new_file.lend(), path), codec, &mut go_on)?,
+            None if self == Self::Gif => gif(sequence, (new_file.as_file(), path), &mut go_on)?,
+            None => apng(sequence, (new_file.as_file(), path), &mut go_on)?,
         }
         // It may have been cancelled at the last moment.
         if !go_on(sequence.frames.count()) {
@@ -116,7 +123,8 @@ impl Video {
             let path = sequence.path(frame);
             return Err(ExportError::Changed { path }.into());
         }
-        let placed = new_file.place();
+        // No hash would tell that it was damaged, as that of a frame does.
+        let placed = new_file.place_durably();
         placed.map_err(|error| VideoError::disk(path, &error))
     }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use exr::image::write::WritableImage as _;
-use exr::image::{Image as ExrImage, SpecificChannels};
+use exr::image::{Encoding, Image as ExrImage, SpecificChannels};
 use exr::math::Vec2;
 use image::ImageError;
 use serde::{Deserialize, Serialize};
@@ -82,7 +82,9 @@ pub fn write_light(
         let [red, green, blue] = pixels.map_or([0.0; 3], |pixels| pixels[column]);
         (red, green, blue)
     };
-    let image = ExrImage::from_channels(size, SpecificChannels::rgb(pixel));
+    let channels = SpecificChannels::rgb(pixel);
+    // Run-length encoding, the default, finds next to nothing in gradients.
+    let image = ExrImage::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, channels);
     let written = image.write().to_buffered(file);
     drop(image);
     let (_, is_wanted) = rows.into_inner().unwrap_or_else(PoisonError::into_inner);

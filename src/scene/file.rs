@@ -12,7 +12,7 @@ use super::check::{Problem, check};
 use super::locate::{PathStep, claimed_version, has_inner_comments, header, locate, locate_items};
 use super::parse_errors::sentence;
 use super::whole::{MAX_BYTES, Scene, VERSION};
-use crate::files::{Stamp, absolute, back_up, read_at_most, read_file, time_of, write_atomic};
+use crate::files::{Stamp, absolute, read_at_most, replace, time_of};
 use crate::mesh::is_mesh_file;
 use crate::words::for_shell;
 
@@ -268,16 +268,22 @@ impl Document {
     /// # Errors
     /// See [`Self::save`].
     pub fn save_stamped(&self, path: &Path) -> Result<(Option<PathBuf>, Stamp), SceneError> {
+        let loses_comments = |existing: &[u8]| {
+            let text = str::from_utf8(existing);
+            text.is_ok_and(|text| self.loses_comments_of(text))
+        };
         let text = self.to_text()?;
-        Self::check_length(path, &text)?;
-        let disk_error = |source| disk_error("write", path, source);
-        let existing = read_file(path).ok();
-        let existing = existing.and_then(|bytes| String::from_utf8(bytes).ok());
-        let loses_comments = existing.is_some_and(|text| self.loses_comments_of(&text));
-        let backup = loses_comments.then(|| back_up(path)).transpose();
-        let backup = backup.map_err(disk_error)?;
-        write_atomic(path, text.as_bytes()).map_err(disk_error)?;
+        let backup = write(path, &text, loses_comments)?;
         Ok((backup, Stamp::of(text.as_bytes(), time_of(path))))
+    }
+
+    /// Writes the document to a file that may hold anything else, of which a backup is then kept. Returns the path of
+    /// the backup.
+    ///
+    /// # Errors
+    /// See [`Self::save`].
+    pub fn save_over(&self, path: &Path) -> Result<Option<PathBuf>, SceneError> {
+        write(path, &self.to_text()?, |_| true)
     }
 
     /// Returns whether `text`, a scene file, has comments that this document lacks.
@@ -288,6 +294,16 @@ impl Document {
         let own_header = plain(header);
         !own_header.is_empty() && own_header != plain(&self.header) || has_inner_comments(text)
     }
+}
+
+/// Writes the text of a scene, see [`replace`].
+fn write(
+    path: &Path,
+    text: &str,
+    is_kept: impl FnOnce(&[u8]) -> bool,
+) -> Result<Option<PathBuf>, SceneError> {
+    Document::check_length(path, text)?;
+    replace(path, text.as_bytes(), is_kept).map_err(|source| disk_error("write", path, source))
 }
 
 /// Returns the absolute path of the folder of a file.
@@ -348,7 +364,9 @@ fn options() -> ron::Options {
 /// columns if the file can still be read.
 pub fn messages_about_objects(path: &Path, sentences: Vec<(usize, String)>) -> Vec<String> {
     let name = path.display().to_string();
-    let text = read_text(path).unwrap_or_default();
+    // A pipe cannot be read a second time.
+    let text = path.is_file().then(|| read_text(path).ok());
+    let text = text.flatten().unwrap_or_default();
     let offsets = locate_items(&text, &[PathStep::Field("objects")]);
     let sentences = sentences.into_iter();
     let messages = sentences.map(|(index, sentence)| match offsets.get(index) {
