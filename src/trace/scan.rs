@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::bundle::Bundle;
 use super::candidates::Candidates;
 use super::entry_points::EntryPoints;
+use super::passing::own_width_around;
 use super::paths::Paths;
 use super::slender::lanes_meeting_oriented_box;
 use super::thin_margin::ThinMargin;
@@ -48,7 +49,7 @@ pub trait Test<L: SimdFloat> {
         _ball: (Vec3<L::Real>, L::Real),
         _thickness: L::Real,
         _paths: &Paths<L>,
-        (_active, _passing): (L::Mask, L::Mask),
+        (_active, _passing): (L::Mask, impl FnOnce() -> L::Mask),
     ) -> u64 {
         0
     }
@@ -209,7 +210,7 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for ObjectVisitor<'_, L, T> {
         &mut self,
         ball: (Vec3<L::Real>, L::Real),
         thickness: L::Real,
-        passing: L::Mask,
+        passing: impl FnOnce() -> L::Mask,
     ) -> u64 {
         let lanes = (self.tree_scan.active, passing);
         self.test
@@ -251,16 +252,22 @@ impl<L: SimdFloat, T: Test<L>> ObjectVisitor<'_, L, T> {
             ignored: self.paths.ignored,
         };
         let bvh = &instance.mesh.bvh;
-        let Some(active) = self.test.test_ball(&instance.mesh, width, &paths, *active) else {
+        let Some(mut active) = self.test.test_ball(&instance.mesh, width, &paths, *active) else {
             return;
         };
         let bundle = self.bundle.seen_from(instance.centre);
         if let Some(oriented) = &instance.mesh.oriented
             && *is_boxed
         {
+            let width = if T::FINDS_THIN {
+                own_width_around(&bundle, &bvh.bounds, &own_margin(self.test))
+            } else {
+                rays.origin.x.like(L::Real::ZERO)
+            };
             let margin = bundle.margin();
             let is_met = lanes_meeting_oriented_box(&paths.rays, margin, oriented, width);
-            if !(is_met & active).any() {
+            active = active & is_met;
+            if !active.any() {
                 self.test.leave_mesh();
                 return;
             }
@@ -333,7 +340,7 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
         &mut self,
         ball: (Vec3<L::Real>, L::Real),
         thickness: L::Real,
-        passing: L::Mask,
+        passing: impl FnOnce() -> L::Mask,
     ) -> u64 {
         let lanes = (self.active, passing);
         self.test

@@ -16,7 +16,7 @@ pub fn lanes_meeting_oriented_box<L: SimdFloat>(
     rays: &Ray<L>,
     margin: L,
     oriented: &OrientedBox<L::Real>,
-    width: L::Real,
+    width: L,
 ) -> L::Mask {
     let [a, b, c] = oriented.axes;
     let direction = rays.direction;
@@ -36,7 +36,7 @@ pub fn lanes_meeting_oriented_box<L: SimdFloat>(
     let mut far = margin.like(L::Real::INFINITY);
     for ((axis, half), inverse) in oriented.axes.iter().zip(oriented.half).zip(inverse) {
         let start = origin.dot(origin.like(*axis));
-        let half = slack + margin.like(half + width);
+        let half = slack + margin.like(half) + width;
         let (low, high) = ((-half - start) * inverse, (half - start) * inverse);
         near = near.max(low.min(high));
         far = far.min(low.max(high));

@@ -212,15 +212,16 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let lanes = self.face_lanes & self.unmerged_lanes & self.passing;
         (thin & lanes, width)
     }
+}
 
-    /// Notes a ball that is `distance` away from the rays, where it counts.
+impl<L: SimdFloat> BallApproach<L> {
+    /// Returns how many pixels away from the rays a ball is, given its distance; infinity where it does not count.
     #[inline(always)]
-    fn note(&mut self, ball: &BallApproach<L>, counts: L::Mask, distance: L) {
-        let width = ball.width;
+    fn in_pixels(&self, counts: L::Mask, distance: L) -> L {
+        let width = self.width;
         // Whether a ray hits what is inside does not matter: it passes closely enough.
         let distance = distance.max(width * width.like_f64(MIN_NOTED_DISTANCE));
-        let near = distance_in_pixels(counts, distance, width);
-        self.best = self.best.min(near);
+        distance_in_pixels(counts, distance, width)
     }
 }
 
@@ -260,7 +261,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let entry = mesh.bvh.bounds.entry(&paths.rays, ball.width);
         let is_close = entry.less(self.query.reach + ball.width);
         let counts = is_small & is_thin & is_before & is_ahead & is_close & self.unmerged_lanes;
-        self.note(&ball, counts, distance);
+        self.best = self.best.min(ball.in_pixels(counts, distance));
         let larger = active & !is_small;
         if !self.enters_meshes || !larger.any() {
             return None;
@@ -276,7 +277,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         (center, radius): (Vec3<L::Real>, L::Real),
         thickness: L::Real,
         paths: &Paths<L>,
-        (active, passing): (L::Mask, L::Mask),
+        (active, passing): (L::Mask, impl FnOnce() -> L::Mask),
     ) -> u64 {
         let ball = self.approach_ball(center, radius, paths);
         let (width, zero) = (ball.width, ball.width.like(L::Real::ZERO));
@@ -285,9 +286,13 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             .like(thickness)
             .less(width * width.like_f64(THIN_WIDTH));
         let is_in_reach = zero.less(ball.along) & ball.along.less(self.query.reach + width);
-        let lanes = self.face_lanes & self.unmerged_lanes & passing;
+        let lanes = active & self.face_lanes & self.unmerged_lanes;
         let counts = is_merged & is_thin & is_in_reach & lanes;
-        self.note(&ball, counts, ball.off - ball.radius);
+        let near = ball.in_pixels(counts, ball.off - ball.radius);
+        if near.less(self.best).any() {
+            let near = L::select(passing(), near, width.like(L::Real::INFINITY));
+            self.best = self.best.min(near);
+        }
         (is_merged | !active).bits()
     }
 

@@ -48,7 +48,7 @@ pub trait TreeVisitor<L: SimdFloat> {
         &mut self,
         _ball: (Vec3<L::Real>, L::Real),
         _thickness: L::Real,
-        _passing: L::Mask,
+        _passing: impl FnOnce() -> L::Mask,
     ) -> u64 {
         0
     }
@@ -184,7 +184,8 @@ pub fn walk_thin<L: SimdFloat>(
             match node.child(slot as usize) {
                 Child::Member(member) if bvh.is_sliced && visitor.is_sliced(member) => {
                     let slot = slot as usize;
-                    let passing = lanes_passing_box(bundle, node, slot, reach, &own_margin);
+                    let contents = (&node.bounds(slot), thickness_of(node, slot));
+                    let passing = lanes_passing_box(bundle, contents, reach, &own_margin);
                     if passing.any() {
                         visitor.visit_slice(member, passing);
                     }
@@ -192,16 +193,16 @@ pub fn walk_thin<L: SimdFloat>(
                 Child::Member(member) => visitor.visit_member(member, width, stack),
                 Child::Node(inner) => {
                     let mut merged_lanes = merged_lanes;
-                    let ball = node.bounds(slot as usize).ball();
+                    let bounds = node.bounds(slot as usize);
+                    let ball = bounds.ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
-                        let thickness = L::Real::from_single(node.thickness[slot as usize]);
-                        let slot = slot as usize;
-                        let passing = if bvh.is_sliced {
-                            lanes_passing_box(bundle, node, slot, reach, &own_margin)
-                        } else {
-                            bundle.active
-                        };
-                        merged_lanes |= visitor.visit_merged_box(ball, thickness, passing);
+                        let thickness = thickness_of(node, slot as usize);
+                        merged_lanes |= visitor.visit_merged_box(
+                            ball,
+                            thickness,
+                            #[inline(always)]
+                            || lanes_passing_box(bundle, (&bounds, thickness), reach, &own_margin),
+                        );
                     }
                     if merged_lanes & all != all {
                         stack.push(StackEntry {
@@ -221,4 +222,9 @@ pub fn walk_thin<L: SimdFloat>(
         let Some(next) = stack.pop() else { return };
         (index, merged_lanes) = (next.inner, next.merged_lanes);
     }
+}
+
+#[inline(always)]
+fn thickness_of<R: Real>(node: &Node, slot: usize) -> R {
+    R::from_single(node.thickness[slot])
 }
