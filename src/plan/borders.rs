@@ -50,9 +50,30 @@ impl Borders {
     }
 }
 
-/// An edge, as its smaller and its larger corner number, and a face that has it: twice the face's number, plus 1 if
-/// the face traverses the edge from the smaller to the larger.
-type Edge = (u32, u32, u32);
+/// An edge of a face; in the order of its corners, so that the faces at an edge follow each other.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Edge {
+    /// The smaller corner number.
+    low: u32,
+    /// The larger corner number.
+    high: u32,
+    /// Twice the number of the face, plus 1 if it traverses the edge from the smaller corner to the larger.
+    face_and_direction: u32,
+}
+
+impl Edge {
+    fn corners(&self) -> (u32, u32) {
+        (self.low, self.high)
+    }
+
+    fn face(&self) -> u32 {
+        self.face_and_direction / 2
+    }
+
+    fn is_ascending(&self) -> bool {
+        self.face_and_direction & 1 == 1
+    }
+}
 
 /// All edges, sorted.
 struct Edges(Vec<Edge>);
@@ -63,7 +84,11 @@ impl Edges {
         let mut edges: Vec<Edge> = Vec::with_capacity(points.len() * 3);
         for (face, &[a, b, c]) in (0..).zip(points) {
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                edges.push((from.min(to), from.max(to), face * 2 + u32::from(from < to)));
+                edges.push(Edge {
+                    low: from.min(to),
+                    high: from.max(to),
+                    face_and_direction: face * 2 + u32::from(from < to),
+                });
             }
         }
         edges.par_sort_unstable();
@@ -72,13 +97,13 @@ impl Edges {
 
     /// Groups of entries that are the same edge.
     fn groups(&self) -> impl Iterator<Item = &[Edge]> {
-        self.0.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+        self.0.chunk_by(|a, b| a.corners() == b.corners())
     }
 
     /// The faces with an edge that no other face has.
     fn border_faces(&self) -> Vec<u32> {
         let border_faces = self.groups().filter(|edge| edge.len() == 1);
-        let mut faces: Vec<u32> = border_faces.map(|edge| edge[0].2 / 2).collect();
+        let mut faces: Vec<u32> = border_faces.map(|edge| edge[0].face()).collect();
         faces.sort_unstable();
         faces.dedup();
         faces
@@ -87,26 +112,25 @@ impl Edges {
     /// Pairs of faces that share an edge: enough of them to connect all faces that do.
     fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
         let neighbours = self.0.windows(2);
-        let pairs = neighbours.filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
-        pairs.map(|pair| [pair[0].2 / 2, pair[1].2 / 2])
+        let pairs = neighbours.filter(|pair| pair[0].corners() == pair[1].corners());
+        pairs.map(|pair| [pair[0].face(), pair[1].face()])
     }
 
     /// Returns whether exactly two faces meet at every edge and traverse it in opposite directions.
     fn are_closed(&self) -> bool {
         self.groups()
-            .all(|edge| matches!(edge, [one, two] if (one.2 ^ two.2) & 1 == 1))
+            .all(|edge| matches!(edge, [one, two] if one.is_ascending() != two.is_ascending()))
     }
 
     /// The other face at an edge; `None` on a border, and where more than two faces meet.
     fn across_edge(&self, from: u32, to: u32, face: u32) -> Option<u32> {
-        let edge = (from.min(to), from.max(to));
-        let first = self.0.partition_point(|&(a, b, _)| (a, b) < edge);
+        let corners = (from.min(to), from.max(to));
+        let first = self.0.partition_point(|edge| edge.corners() < corners);
         let entries = self.0[first..].iter();
-        let mut entries = entries.take_while(|&&(a, b, _)| (a, b) == edge);
+        let mut entries = entries.take_while(|edge| edge.corners() == corners);
         match (entries.next(), entries.next(), entries.next()) {
-            (Some(&(_, _, one)), Some(&(_, _, two)), None) => {
-                Some(if one / 2 == face { two / 2 } else { one / 2 })
-            }
+            (Some(one), Some(two), None) if one.face() == face => Some(two.face()),
+            (Some(one), Some(_), None) => Some(one.face()),
             _ => None,
         }
     }

@@ -197,15 +197,18 @@ impl<R: Real> Bvh<R> {
     /// Builds a tree over `count` members. They are queried by number instead of stored, since a million of them
     /// would take much memory twice.
     pub fn new(count: usize, member: impl Fn(usize) -> Member<R>) -> Self {
-        Self::of_slices((count, |number| (number as u32, 0)), |number, _| {
-            member(number)
-        })
+        Self::of_slices(
+            count,
+            |number| (number as u32, 0),
+            |number, _| member(number),
+        )
     }
 
     /// Builds a tree over `count` slices of members. `slice` returns the number of the member and that of its slice,
     /// `member` that slice as an entry of the tree.
     pub fn of_slices(
-        (count, slice): (usize, impl Fn(usize) -> (u32, u8)),
+        count: usize,
+        slice: impl Fn(usize) -> (u32, u8),
         member: impl Fn(usize, u8) -> Member<R>,
     ) -> Self {
         // Single precision is enough to decide the grouping.
@@ -304,13 +307,9 @@ impl<R: Real> Bvh<R> {
     /// Returns the same tree in another precision, around the same members rounded to it: a member inside a box of
     /// single precision stays inside when it is rounded.
     pub fn in_precision<S: Real>(&self) -> Bvh<S> {
-        let BoundingBox { low, high } = self.bounds;
         Bvh {
             nodes: Arc::clone(&self.nodes),
-            bounds: BoundingBox {
-                low: low.in_precision(),
-                high: high.in_precision(),
-            },
+            bounds: self.bounds.in_precision(),
             thinnest: S::from_f64(self.thinnest.to_f64()),
             is_sliced: self.is_sliced,
             built_surface: self.built_surface,

@@ -105,8 +105,13 @@ fn checked_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
     scene.visible_lights().filter(move |_| are_few)
 }
 
+/// The visible endless planes.
+pub fn visible_planes(scene: &Scene) -> impl Iterator<Item = PlanePiece> {
+    visible_pieces(scene).filter(|piece| piece.outline == Outline::Endless)
+}
+
 /// The visible flat objects.
-pub fn visible_pieces(scene: &Scene) -> impl Iterator<Item = PlanePiece> {
+fn visible_pieces(scene: &Scene) -> impl Iterator<Item = PlanePiece> {
     let visible = scene.visible_objects();
     visible.filter_map(|object| object.shape.plane_piece())
 }
@@ -122,7 +127,7 @@ pub fn is_at_border(scene: &Scene, eye: Option<DVec3>, size: f64) -> bool {
 }
 
 /// Returns whether two flat pieces are a tiny distance apart. Those that coincide are ordered by ties.
-pub fn has_layers(scene: &Scene, (centre, extent): (DVec3, f64)) -> bool {
+pub fn has_layers(scene: &Scene, centre: DVec3, extent: f64) -> bool {
     let pieces: Vec<_> = visible_pieces(scene).take(MAX_PIECES).collect();
     pieces.iter().enumerate().any(|(index, piece)| {
         let mut others = pieces[index + 1..].iter();

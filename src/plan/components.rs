@@ -10,31 +10,36 @@ use crate::mesh::position_key;
 use crate::primitive::PackedTriangle;
 use crate::simd::{Real as _, Vec3};
 
-/// Volume that an open sheet may enclose through rounding alone, relative to its area to the power of 1.5.
+/// Six times the volume that an open sheet may enclose through rounding alone, relative to twice its area to the
+/// power of 1.5.
 const MAX_OPEN_VOLUME: f64 = 1e-6;
 /// Number of connected triangles from which they count as one component; with fewer, the edges between them are visible
 /// as such.
 const LARGE_COMPONENT: u32 = 64;
 
 /// Returns six times the volume that the triangles enclose; negative if their normals point inwards.
-pub fn volume(triangles: &[PackedTriangle<f64>]) -> f64 {
+pub fn six_volumes(triangles: &[PackedTriangle<f64>]) -> f64 {
     triangles
         .iter()
-        .map(|triangle| volume_from(DVec3::ZERO, corners(triangle)))
+        .map(|triangle| six_tetrahedra(DVec3::ZERO, corners(triangle)))
         .sum()
 }
 
 /// Returns the component of each face, given the corner numbers of the faces; faces that share a corner are
 /// connected. Components are numbered from 0.
 pub fn components_at_corners(points: &[[u32; 3]]) -> Vec<u32> {
-    let count = points.iter().flatten().max().map_or(0, |&last| last + 1);
-    let mut sets = UnionFind::new(count);
+    let mut sets = UnionFind::new(count_corners(points));
     for &[a, b, c] in points {
         sets.join(a, b);
         sets.join(b, c);
     }
     let first_points = points.iter().map(|face| sets.root(face[0]));
     first_points.map(numbering()).collect()
+}
+
+/// The number of corners of faces with these corner numbers.
+pub fn count_corners(points: &[[u32; 3]]) -> u32 {
+    points.iter().flatten().max().map_or(0, |&last| last + 1)
 }
 
 /// Returns the component of each of `count` faces, given pairs of faces that share an edge: faces that touch only
@@ -104,17 +109,17 @@ pub fn inside_out(triangles: &[PackedTriangle<f64>], components: &[u32]) -> Vec<
         *sum += corners(triangle).into_iter().sum::<DVec3>();
         *count += 3.0;
     }
-    let mut volumes = vec![(0.0, 0.0); count];
+    let mut sizes = vec![(0.0, 0.0); count];
     for (triangle, &component) in triangles.iter().zip(components) {
         let (sum, count) = sums[component as usize];
         let [a, b, c] = corners(triangle);
-        let (volume, area) = &mut volumes[component as usize];
-        *volume += volume_from(sum / count, [a, b, c]);
-        *area += (b - a).cross(c - a).length();
+        let (six_volumes, two_areas) = &mut sizes[component as usize];
+        *six_volumes += six_tetrahedra(sum / count, [a, b, c]);
+        *two_areas += (b - a).cross(c - a).length();
     }
     let is_inside_out = |&component: &u32| {
-        let (volume, area) = volumes[component as usize];
-        volume < -MAX_OPEN_VOLUME * area.powf(1.5)
+        let (six_volumes, two_areas) = sizes[component as usize];
+        six_volumes < -MAX_OPEN_VOLUME * two_areas.powf(1.5)
     };
     components.iter().map(is_inside_out).collect()
 }
@@ -138,7 +143,7 @@ fn corners(triangle: &PackedTriangle<f64>) -> [DVec3; 3] {
 }
 
 /// Six times the volume of a tetrahedron, given by its apex and its base, which is clockwise seen from outside.
-fn volume_from(apex: DVec3, base: [DVec3; 3]) -> f64 {
+fn six_tetrahedra(apex: DVec3, base: [DVec3; 3]) -> f64 {
     let [a, b, c] = base.map(|corner| corner - apex);
     a.dot(c.cross(b))
 }
@@ -182,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn each_part_looks_its_own_way_and_a_sheet_looks_neither() {
+    fn orientation_is_found_per_component_and_a_sheet_has_none() {
         let (mut triangles, turned) = (ball(0.0), ball(10.0));
         let each = triangles.len();
         triangles.extend(turned);
@@ -205,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn many_triangles_of_a_part_are_one_thing() {
+    fn only_large_components_count_as_one() {
         let many = LARGE_COMPONENT as usize;
         let components = [vec![0; many], vec![1; many - 1], vec![2; many]].concat();
         let things = large_components(&components);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Coincidence, List, Object, Overlap, Projection, Scene, Shape, unit};
+use crate::scene::{Coincidence, List, Object, Overlap, Scene, Shape, unit};
 
 /// Maximum number of objects that contain lights or the eye and are kept out of the tree; if there are more, all
 /// stay in it.
@@ -137,7 +137,8 @@ impl Contacts {
     pub fn new(
         scene: &Scene,
         request: &RenderRequest,
-        (found, lights): (&[Coincidence], Arc<LightContacts>),
+        found: &[Coincidence],
+        lights: Arc<LightContacts>,
     ) -> Self {
         if request.model == Model::Everything {
             return Self::default();
@@ -150,7 +151,7 @@ impl Contacts {
             lights,
             ..Self::default()
         };
-        let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
+        let is_parallel = request.is_parallel(&scene.camera);
         contacts.find_eye_contacts(scene, is_parallel);
         contacts.find_outside_tree(&scene.objects);
         contacts

@@ -112,7 +112,7 @@ mod tests {
     use crate::scene::Mesh;
 
     #[test]
-    fn half_of_a_ball_is_idle_with_its_nodes() {
+    fn the_faces_of_a_ball_towards_a_light_are_culled_with_their_nodes() {
         let mesh = PackedMesh::new(&Mesh::of(icosphere(1.0)));
         let culled_faces = CulledFaces::towards(&mesh, Vec3::new(0.0, 1e4, 0.0));
         let faces = 0..mesh.triangles.len() as u32;

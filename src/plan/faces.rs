@@ -7,7 +7,7 @@ use super::pack::Plan;
 use super::request::RenderRequest;
 use super::solids::Solids;
 use crate::primitive::Culling;
-use crate::scene::{Projection, Scene};
+use crate::scene::Scene;
 use crate::simd::{Real, Vec3};
 
 impl<R: Real> Plan<R> {
@@ -21,8 +21,7 @@ impl<R: Real> Plan<R> {
             away.map(|(face, is_away)| is_away && face.culling == Culling::Far)
                 .collect()
         };
-        let projection = request.projection_of(&scene.camera);
-        if projection == Projection::Perspective {
+        if !request.is_parallel(&scene.camera) {
             self.camera_culled_faces = turned_away(scene.camera.position - self.centre);
         }
         for light in &mut self.lights {
@@ -42,7 +41,7 @@ impl<R: Real> Plan<R> {
         let Some(geometry) = &self.geometry else {
             return;
         };
-        if request.projection_of(&scene.camera) != Projection::Perspective {
+        if request.is_parallel(&scene.camera) {
             return;
         }
         let eye = Vec3::from_dvec3(scene.camera.position - self.centre);

@@ -194,7 +194,8 @@ impl<R: Real> PlanCache<R> {
     pub fn geometry(
         &mut self,
         scene: &Scene,
-        (centre, excluded): (DVec3, &BTreeSet<usize>),
+        centre: DVec3,
+        excluded: &BTreeSet<usize>,
         sampling: Sampling,
     ) -> Arc<Geometry<R>> {
         // Adaptive sampling treats the content of small boxes as one thing, so the picture depends on the tree: it
@@ -210,7 +211,7 @@ impl<R: Real> PlanCache<R> {
         let last = self.last.take().map(|(_, last)| last);
         let previous = last.as_deref().filter(|_| may_refit);
         let previous = previous.map(|last| (last.counts(), &last.bvh));
-        let geometry = Geometry::new(scene, (centre, excluded), meshes, previous);
+        let geometry = Geometry::new(scene, centre, excluded, meshes, previous);
         let geometry = Arc::new(geometry);
         self.last = Some((Source::of(scene, centre, excluded), Arc::clone(&geometry)));
         geometry
@@ -261,7 +262,8 @@ impl<R: Real> Geometry<R> {
     /// and refits the tree of the last picture if that had the same number of members of each kind.
     fn new(
         scene: &Scene,
-        (centre, excluded): (DVec3, &BTreeSet<usize>),
+        centre: DVec3,
+        excluded: &BTreeSet<usize>,
         mut known: Meshes<R>,
         previous: Option<(Counts, &Bvh<R>)>,
     ) -> Self {
@@ -333,10 +335,7 @@ impl<R: Real> Geometry<R> {
     pub fn outline(&self) -> impl Iterator<Item = BoundingBox<R>> {
         let meshes = self.meshes.iter().flat_map(|instance| {
             let boxes = instance.mesh.bvh.outline();
-            boxes.map(|inner| BoundingBox {
-                low: inner.low + instance.centre,
-                high: inner.high + instance.centre,
-            })
+            boxes.map(|inner| inner.moved(instance.centre))
         });
         let is_fine = self.meshes.len() <= MAX_FINE_MESHES && self.primitives.is_empty();
         let coarse = self.bvh.outline().filter(move |_| !is_fine);

@@ -74,18 +74,19 @@ pub fn group_boxes(boxes: &[Aabb]) -> Vec<WideNode> {
     } else {
         PARTITION_THRESHOLD
     };
-    build_nodes(boxes, &mut members, (max_size, MAX_DEPTH))
+    build_nodes(boxes, &mut members, max_size, MAX_DEPTH)
 }
 
 /// Builds the tree over some of the boxes; splits them into parts first if there are more than `max_size`.
 fn build_nodes(
     boxes: &[Aabb],
     members: &mut [u32],
-    (max_size, max_depth): (usize, usize),
+    max_size: usize,
+    max_depth: usize,
 ) -> Vec<WideNode> {
     if members.len() > max_size {
         let parts = split_into_parts(boxes, members).into_par_iter();
-        let trees = parts.map(|part| build_nodes(boxes, part, (max_size, max_depth - 1)));
+        let trees = parts.map(|part| build_nodes(boxes, part, max_size, max_depth - 1));
         return under_one_root(trees.collect());
     }
     let own_boxes = members.iter().map(|&member| boxes[member as usize]);

@@ -11,7 +11,7 @@ use super::pack::Plan;
 use super::packed_mesh::{MeshInstance, PackedMesh};
 use super::request::{Model, RenderRequest};
 use crate::primitive::{BoundingBox, PackedTriangle};
-use crate::scene::{Mesh, PlanePiece, Projection, Scene, Shape, unit};
+use crate::scene::{Mesh, PlanePiece, Scene, Shape, unit};
 use crate::simd::{Real, Vec3};
 
 /// Height above a face, as a share of the coordinates, that single precision may give a point on the face.
@@ -46,7 +46,7 @@ impl<R: Real> Plan<R> {
                 )
                 .collect()
         };
-        let is_parallel = request.projection_of(&scene.camera) == Projection::Orthographic;
+        let is_parallel = request.is_parallel(&scene.camera);
         self.unseen_faces = containing(RayEnd {
             point: scene.camera.position,
             direction: unit(scene.camera.look_at).filter(|_| is_parallel),

@@ -85,8 +85,10 @@ impl<R: Real> PointLight<R> {
 pub fn pack_lights<R: Real>(
     scene: &Scene,
     centre: DVec3,
-    (occluders, model): (&[PlaneOccluder], Model),
-    (contacts, number): (&LightContacts, impl Fn(&usize) -> Option<usize>),
+    occluders: &[PlaneOccluder],
+    model: Model,
+    contacts: &LightContacts,
+    number: impl Fn(&usize) -> Option<usize>,
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
     // Whether a light is in the plane of any face of a mesh is unknown.

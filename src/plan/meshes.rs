@@ -22,7 +22,7 @@ impl<R: Real> Meshes<R> {
         if let Some(known) = self.by_key.get(&key) {
             return Arc::clone(known);
         }
-        let turned = self.by_level.get(&key.level());
+        let turned = self.by_level.get(&key.level);
         let turned = turned.and_then(|other| other.turned(mesh));
         let packed = turned.unwrap_or_else(|| PackedMesh::new(mesh));
         let packed = PackedMesh::in_precision(&Arc::new(packed));
@@ -31,8 +31,7 @@ impl<R: Real> Meshes<R> {
     }
 
     fn keep(&mut self, packed: Arc<PackedMesh<R>>) {
-        self.by_level
-            .insert(packed.key.level(), Arc::clone(&packed));
+        self.by_level.insert(packed.key.level, Arc::clone(&packed));
         self.by_key.insert(packed.key, packed);
     }
 

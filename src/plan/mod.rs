@@ -68,14 +68,13 @@ mod holding;
 
 mod faces;
 
-mod crossed;
+mod tests_spared;
 
 mod needs;
 
 pub use balls::Balls;
 pub use bvh::{Bvh, Child, GROUP, Node};
 pub use contacts::RankedObjects;
-pub use crossed::tests_spared;
 pub use culled_faces::CulledFaces;
 pub use flats::FlatExtent;
 pub use geometry::{Geometry, PlanCache, Planner};
@@ -90,4 +89,5 @@ pub use precision::{is_double, is_filtered};
 pub use ray_origin::RayOrigin;
 pub use request::{Model, Region, RenderRequest};
 pub use show::Show;
+pub use tests_spared::tests_spared;
 pub use view::View;

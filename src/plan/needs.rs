@@ -18,6 +18,9 @@ pub const ACCELERATOR: &str = "accelerator";
 
 /// The reason for anything that the user has chosen.
 const ASKED: &str = "it was requested";
+/// The reason where formulas with known errors were requested.
+const FAILING: &str =
+    "formulas that are known to fail were requested, and their errors should be visible";
 
 /// One decision of the plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -164,9 +167,6 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     )
 }
 
-const FAILING: &str =
-    "formulas that are known to fail were requested, and their errors should be visible";
-
 fn planes(plan: &Plan<f64>) -> Need {
     let rule = "planes";
     match (plan.primitives.planes.len(), plan.planes_cast) {
@@ -254,12 +254,12 @@ fn faces(plan: &Plan<f64>) -> Need {
     }
     let count_set = |flags: &[bool]| flags.iter().filter(|flag| **flag).count();
     let unseen = count_set(&plan.camera_culled_faces);
-    let idle: usize = plan
+    let unshadowing: usize = plan
         .lights
         .iter()
         .map(|light| count_set(&light.shadow_culled_faces))
         .sum();
-    if unseen + idle == 0 {
+    if unseen + unshadowing == 0 {
         let why = if plan.methods.is_tight() {
             "none belongs to a closed convex solid with the camera or a light outside"
         } else {
@@ -271,7 +271,7 @@ fn faces(plan: &Plan<f64>) -> Need {
     need(
         rule,
         format!(
-            "{unseen} of {} left out for the camera, {idle} of {} for {}",
+            "{unseen} of {} left out for the camera, {unshadowing} of {} for {}",
             counted(all, "triangle"),
             all * plan.lights.len(),
             counted(plan.lights.len(), "light")

@@ -159,12 +159,12 @@ impl<R: Real> Plan<R> {
             max_mesh_centre: R::ZERO,
         };
         let coincidences = cache.coincidences(&scene.objects, centre);
-        let contacts = Contacts::new(scene, request, (&coincidences, cache.light_contacts(scene)));
+        let contacts = Contacts::new(scene, request, &coincidences, cache.light_contacts(scene));
         let projector = projector(scene, request).filter(|_| may_cull);
         let projector = projector.as_ref();
         if uses_tree(scene, request, may_cull) {
-            let geometry =
-                cache.geometry(scene, (centre, &contacts.outside_tree), request.sampling);
+            let outside_tree = &contacts.outside_tree;
+            let geometry = cache.geometry(scene, centre, outside_tree, request.sampling);
             plan.hit_order = HitOrder::of(geometry.members(), request);
             plan.take_geometry(geometry, projector);
         }
@@ -173,10 +173,9 @@ impl<R: Real> Plan<R> {
         let number = |index: &usize| numbers.get(index).copied().filter(|_| is_outside(index));
         plan.edge_on = contacts.edge_on.iter().filter_map(number).collect();
         plan.eye_primitive = contacts.eye_object.as_ref().and_then(number);
-        plan.find_ties(scene, (request, &contacts), &numbers);
+        plan.find_ties(scene, request, &contacts, &numbers);
         let occluders = occluders.as_deref().unwrap_or_default();
-        let light_contacts = (&*contacts.lights, number);
-        plan.lights = pack_lights(scene, centre, (occluders, model), light_contacts);
+        plan.lights = pack_lights(scene, centre, occluders, model, &contacts.lights, number);
         plan.find_held_faces(scene, request);
         if matches!(request.sampling, Sampling::Adaptive { .. }) {
             let outside_tree = contacts.outside_tree.iter().filter_map(number).collect();

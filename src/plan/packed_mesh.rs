@@ -12,7 +12,7 @@ use rayon::iter::{
 use super::borders::Borders;
 use super::bvh::{Bvh, Member};
 use super::cast::is_outside;
-use super::components::{first_of_components, volume};
+use super::components::{first_of_components, six_volumes};
 use super::oriented_box::OrientedBox;
 use super::slices::{entries, slicings};
 use super::smooth::{corner_normals, largest_lift};
@@ -61,26 +61,39 @@ pub struct PackedMesh<R> {
     source: Arc<Triangles>,
 }
 
-/// What a packed mesh is made from, independent of its position: the address of its faces, and the bits of its
-/// rotation, scale and smoothing angle.
+/// What a packed mesh is made from, independent of its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MeshKey(LevelKey, [u64; 3]);
+pub struct MeshKey {
+    /// What does not depend on the rotation.
+    pub level: LevelKey,
+    /// The bits of the rotation.
+    rotation: [u64; 3],
+}
 
-/// The same without the rotation.
-pub type LevelKey = (usize, [u64; 3], u64);
+/// What a packed mesh is made from, apart from its rotation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LevelKey {
+    /// The address of the faces.
+    faces: usize,
+    /// The bits of the scale.
+    scale: [u64; 3],
+    /// The bits of the smoothing angle.
+    smooth: u64,
+}
 
 impl MeshKey {
     /// The key of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
-        let address = Arc::as_ptr(mesh.source.triangles()).addr();
         let bits = |parts: DVec3| parts.to_array().map(f64::to_bits);
-        let level = (address, bits(mesh.scale), mesh.smooth.to_bits());
-        Self(level, bits(mesh.rotation))
-    }
-
-    /// The key of the mesh without rotation.
-    pub fn level(&self) -> LevelKey {
-        self.0
+        let level = LevelKey {
+            faces: Arc::as_ptr(mesh.source.triangles()).addr(),
+            scale: bits(mesh.scale),
+            smooth: mesh.smooth.to_bits(),
+        };
+        Self {
+            level,
+            rotation: bits(mesh.rotation),
+        }
     }
 }
 
@@ -163,7 +176,7 @@ impl PackedMesh<f64> {
         measure(&mut triangles, &faces, &mut bvh, &borders);
         let component_firsts = first_of_components(&borders.connected).into();
         let volume = if borders.is_closed {
-            volume(&triangles)
+            six_volumes(&triangles)
         } else {
             0.0
         };
@@ -202,7 +215,8 @@ impl PackedMesh<f64> {
         let triangles = self.triangles.iter().map(PackedTriangle::in_precision);
         let smooth = self.smooth.iter().map(CornerNormals::in_precision);
         self.with(
-            (triangles.collect(), smooth.collect()),
+            triangles.collect(),
+            smooth.collect(),
             self.bvh.in_precision(),
         )
     }
@@ -238,14 +252,15 @@ impl<R: Real> PackedMesh<R> {
             middle,
             linear,
             key: MeshKey::of(mesh),
-            ..self.with((triangles, smooth), bvh)
+            ..self.with(triangles, smooth, bvh)
         })
     }
 
     /// The same mesh with other corners of its triangles.
     fn with<S: Real>(
         &self,
-        (triangles, smooth): (Vec<PackedTriangle<S>>, Vec<CornerNormals<S>>),
+        triangles: Vec<PackedTriangle<S>>,
+        smooth: Vec<CornerNormals<S>>,
         bvh: Bvh<S>,
     ) -> PackedMesh<S> {
         PackedMesh {
@@ -298,7 +313,7 @@ fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64
     }
     let entries = entries(slicings);
     let slice = |entry: usize| entries[entry];
-    let mut bvh = Bvh::of_slices((entries.len(), slice), |face, slice| {
+    let mut bvh = Bvh::of_slices(entries.len(), slice, |face, slice| {
         let bounds = slicings[face].bounds(&corners(face), slice);
         if slicings[face].count() == 1 {
             return member(bounds);
@@ -376,15 +391,12 @@ impl<R: Real> MeshInstance<R> {
 
     /// The mesh as a member of the tree over all objects.
     pub fn member(&self) -> Member<R> {
-        let BoundingBox { low, high } = self.mesh.bvh.bounds;
+        let bounds = &self.mesh.bvh.bounds;
         // One rounding per sum.
-        let size = self.centre.max_abs() + low.max_abs().max(high.max_abs());
-        let slack = Vec3::splat(size * R::UNIT_ROUNDOFF * R::from_f64(2.0));
+        let size = self.centre.max_abs() + bounds.max_abs();
+        let slack = size * R::UNIT_ROUNDOFF * R::from_f64(2.0);
         Member {
-            bounds: BoundingBox {
-                low: self.centre + low - slack,
-                high: self.centre + high + slack,
-            },
+            bounds: bounds.moved(self.centre).widened(slack),
             thickness: self.mesh.bvh.thinnest,
         }
     }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::closeness::visible_pieces;
+use super::closeness::visible_planes;
 use super::request::{Model, RenderRequest};
-use crate::scene::{Outline, PlanePiece, Projection, Scene};
+use crate::scene::{PlanePiece, Scene};
 
 /// A plane of which only one side can be seen.
 pub struct PlaneOccluder {
@@ -26,13 +26,13 @@ impl PlaneOccluder {
 /// sides, for an eye on a plane, and for formulas whose failures must show.
 pub fn classify_planes(scene: &Scene, request: &RenderRequest) -> Option<Vec<PlaneOccluder>> {
     let camera = &scene.camera;
-    let is_parallel = request.projection_of(camera) == Projection::Orthographic;
-    if is_parallel || !request.methods.is_sound() || request.model == Model::Everything {
+    if request.is_parallel(camera)
+        || !request.methods.is_sound()
+        || request.model == Model::Everything
+    {
         return None;
     }
-    let pieces = visible_pieces(scene);
-    let planes = pieces.filter(|piece| piece.outline == Outline::Endless);
-    planes
+    visible_planes(scene)
         .map(|piece| {
             let height = piece.height(camera.position);
             let is_turned = height < 0.0;

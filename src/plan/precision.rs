@@ -1,8 +1,10 @@
 //! The real type that a scene needs: single precision wherever its errors stay invisible.
 
-use super::closeness::{has_layers, has_twins, is_almost_on, is_at_border, is_just_above};
+use super::closeness::{
+    has_layers, has_twins, is_almost_on, is_at_border, is_just_above, visible_planes,
+};
 use super::request::{Model, RenderRequest};
-use crate::scene::{Object, Precision, Projection, Scene, Shape, unit};
+use crate::scene::{Object, Precision, Projection, Scene, unit};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -121,7 +123,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     let allows_finer_features = allows_finer_features(scene, request);
     let size = (high - low).length();
     // Samples that search for an edge inside a pixel are not filtered, and layers would show in all of them.
-    if has_layers(scene, (centre, extent))
+    if has_layers(scene, centre, extent)
         || !allows_finer_features && is_at_border(scene, start, size)
     {
         return true;
@@ -153,12 +155,8 @@ fn farthest_wall(scene: &Scene) -> f64 {
         scene.camera.position,
         unit(scene.camera.look_at).unwrap_or_default(),
     );
-    let visible = scene.visible_objects();
-    let planes = visible.filter_map(|object| match &object.shape {
-        shape @ Shape::Plane(_) => shape.plane_piece(),
-        _ => None,
-    });
-    let facing = planes.filter(|piece| direction.dot(piece.normal).abs() > MIN_FACING_COSINE);
+    let facing =
+        visible_planes(scene).filter(|piece| direction.dot(piece.normal).abs() > MIN_FACING_COSINE);
     let distances = facing.map(|piece| -piece.height(eye) / direction.dot(piece.normal));
     distances.fold(0.0, f64::max)
 }
@@ -388,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rule_flips_at_its_boundary() {
+    fn a_sphere_may_be_five_thousand_radii_away() {
         let mut scene = Scene::demo();
         assert!(!is_needed(&scene));
         scene.objects.retain(|object| object.name == "Sphere 1");

@@ -43,6 +43,11 @@ impl RenderRequest {
         self.projection.unwrap_or(camera.projection)
     }
 
+    /// Returns whether the rays of the picture are parallel.
+    pub fn is_parallel(&self, camera: &Camera) -> bool {
+        self.projection_of(camera) == Projection::Orthographic
+    }
+
     /// The still picture that the scene's own settings describe.
     pub fn still(scene: &Scene) -> Self {
         Self::of(scene, scene.render.width, scene.render.height)

@@ -6,7 +6,7 @@ use rayon::iter::{
     ParallelIterator as _,
 };
 
-use super::components::number_corners;
+use super::components::{count_corners, number_corners};
 use crate::primitive::{CornerNormals, PackedTriangle};
 use crate::simd::{Real, Vec3};
 
@@ -154,7 +154,7 @@ struct CornerFaces {
 
 impl CornerFaces {
     fn of(faces: &[[u32; 3]]) -> Self {
-        let corners = faces.iter().flatten().max().map_or(0, |last| last + 1);
+        let corners = count_corners(faces);
         let mut firsts = vec![0_u32; corners as usize + 1];
         for &corner in faces.iter().flatten() {
             firsts[corner as usize + 1] += 1;

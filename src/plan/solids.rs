@@ -16,6 +16,8 @@ const MAX_FACES: usize = 256;
 /// Distance by which a point must be in front of or behind a face to count as such, as a share of the solid's size:
 /// more than single precision can shift a ray.
 const MARGIN: f64 = 1e-5;
+/// Share of that distance by which a corner may be in front of a face of a convex solid: for its own rounding.
+const CONVEX_SHARE: f64 = 1e-3;
 
 /// Triangles that are clockwise seen from outside, and the solids that they form.
 #[derive(Clone, Debug, Default)]
@@ -48,9 +50,9 @@ impl Solids {
         let mut is_away = vec![false; self.triangles.len()];
         for faces in &self.solids {
             let heights = faces.iter().map(|&face| {
-                let (normal, offset, margin) = plane(&self.triangles[face]);
-                let height = normal.dot(point) - offset;
-                (face, height, margin + MARGIN * height.abs())
+                let plane = FacePlane::of(&self.triangles[face]);
+                let height = plane.height(point);
+                (face, height, plane.margin + MARGIN * height.abs())
             });
             if heights.clone().any(|(_, height, margin)| height > margin) {
                 for (face, height, margin) in heights {
@@ -89,12 +91,32 @@ pub fn faces_of_solids(scene: &Scene) -> HashSet<[Corner; 3]> {
         .collect()
 }
 
-/// The unit normal outwards, the distance from the origin along it, and the tolerance for points on the face.
-fn plane([a, b, c]: &[DVec3; 3]) -> (DVec3, f64, f64) {
-    let across = (*c - *a).cross(*b - *a);
-    let normal = across.try_normalize().unwrap_or(across);
-    let size = (*b - *a).length() + (*c - *a).length() + a.abs().max_element();
-    (normal, normal.dot(*a), MARGIN * size)
+/// The plane of a face.
+struct FacePlane {
+    /// The unit normal outwards; zero, or hardly longer, for a face without an area.
+    normal: DVec3,
+    /// Distance from the origin along the normal.
+    offset: f64,
+    /// Height up to which a point counts as on the face.
+    margin: f64,
+}
+
+impl FacePlane {
+    fn of([a, b, c]: &[DVec3; 3]) -> Self {
+        let across = (*c - *a).cross(*b - *a);
+        let normal = across.try_normalize().unwrap_or(across);
+        let size = (*b - *a).length() + (*c - *a).length() + a.abs().max_element();
+        Self {
+            normal,
+            offset: normal.dot(*a),
+            margin: MARGIN * size,
+        }
+    }
+
+    /// Height of a point in front of the face; negative behind it.
+    fn height(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
 }
 
 /// Groups triangles that are connected by common corners.
@@ -115,12 +137,10 @@ fn connected(triangles: &[[DVec3; 3]]) -> Vec<Vec<usize>> {
 /// Returns whether every corner is on or behind every face.
 fn is_convex(triangles: &[[DVec3; 3]], faces: &[usize]) -> bool {
     faces.iter().all(|&face| {
-        let (normal, offset, margin) = plane(&triangles[face]);
-        let corners = faces.iter().flat_map(|&other| triangles[other]);
-        normal != DVec3::splat(0.0)
-            && corners
-                .map(|point| normal.dot(point) - offset)
-                .all(|height| height <= margin * 1e-3)
+        let plane = FacePlane::of(&triangles[face]);
+        let mut corners = faces.iter().flat_map(|&other| triangles[other]);
+        plane.normal != DVec3::ZERO
+            && corners.all(|point| plane.height(point) <= plane.margin * CONVEX_SHARE)
     })
 }
 

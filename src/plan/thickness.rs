@@ -95,8 +95,8 @@ impl Faces<'_> {
         };
         let middle = a * weight_a + b * weight_b + c * weight_c;
         let mut nearest = f64::INFINITY;
-        let ray = ((middle, inwards), MAX_NODES);
-        let is_complete = cast(self.triangles, self.bvh, ray, |other, t| {
+        let (triangles, bvh) = (self.triangles, self.bvh);
+        let is_complete = cast(triangles, bvh, middle, inwards, MAX_NODES, |other, t| {
             if other as usize != face {
                 nearest = nearest.min(t);
             }

@@ -10,7 +10,7 @@ use super::pack::Plan;
 use super::packed_mesh::MeshInstance;
 use super::request::RenderRequest;
 use crate::primitive::BoundingBox;
-use crate::scene::{Coincidence, Overlap, Projection, Scene};
+use crate::scene::{Coincidence, Overlap, Scene};
 use crate::simd::Real;
 
 /// Twice the distance up to which surfaces count as one, as a share of the coordinates: their own numbers are
@@ -23,10 +23,11 @@ impl<R: Real> Plan<R> {
     pub fn find_ties(
         &mut self,
         scene: &Scene,
-        (request, contacts): (&RenderRequest, &Contacts),
+        request: &RenderRequest,
+        contacts: &Contacts,
         listed: &HashMap<usize, usize>,
     ) {
-        let is_perspective = request.projection_of(&scene.camera) == Projection::Perspective;
+        let is_perspective = !request.is_parallel(&scene.camera);
         let is_relevant = |found: &&Coincidence| !(is_perspective && self.is_hidden(scene, found));
         let relevant: Vec<&Coincidence> = contacts.shared.iter().filter(is_relevant).collect();
         // If all objects in one surface look alike, it does not matter which of them is in front.

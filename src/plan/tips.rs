@@ -1,5 +1,6 @@
 //! Where meshes taper to less than their thickness: at their borders and sharp points.
 
+use super::components::count_corners;
 use crate::primitive::{PackedTriangle, Tip, Vertex};
 use crate::simd::Vec3;
 
@@ -64,7 +65,7 @@ pub fn tips(
 
 /// Collects the edges at each point.
 fn around_points(triangles: &[PackedTriangle<f64>], points: &[[u32; 3]]) -> Vec<PointEdges> {
-    let count = points.iter().flatten().max().map_or(0, |last| last + 1);
+    let count = count_corners(points);
     let empty = PointEdges {
         faces: 0,
         axis: Vec3::splat(0.0),

@@ -58,6 +58,23 @@ impl<R: Real> BoundingBox<R> {
         }
     }
 
+    /// The box moved by a vector.
+    #[must_use]
+    pub fn moved(&self, by: Vec3<R>) -> Self {
+        Self {
+            low: self.low + by,
+            high: self.high + by,
+        }
+    }
+
+    /// The same box, rounded to another precision.
+    pub fn in_precision<S: Real>(&self) -> BoundingBox<S> {
+        BoundingBox {
+            low: self.low.in_precision(),
+            high: self.high.in_precision(),
+        }
+    }
+
     /// The box's bounding ball: its middle and radius.
     pub fn ball(&self) -> (Vec3<R>, R) {
         let half = R::from_f64(0.5);

@@ -24,6 +24,10 @@ pub struct Rectangle {
     pub rows: Extent,
 }
 
+/// Share of a distance, or an angle, up to which something counts as beside the eye: far above rounding, and far below
+/// a pixel.
+const AT_THE_SIDE: f64 = 1e-6;
+
 /// The range of anything that may be anywhere.
 const ANYWHERE: Extent = Extent {
     from: f32::NEG_INFINITY,
@@ -105,7 +109,9 @@ impl Projector {
         match self.projection {
             Projection::Orthographic => Some(in_camera.map(|[x, y, _]| [x, y])),
             Projection::Perspective => {
-                let is_ahead = in_camera.iter().all(|[_, _, depth]| *depth > size * 1e-6);
+                let is_ahead = in_camera
+                    .iter()
+                    .all(|[_, _, depth]| *depth > size * AT_THE_SIDE);
                 is_ahead.then(|| in_camera.map(|[x, y, depth]| [x / depth, y / depth]))
             }
         }
@@ -137,11 +143,11 @@ fn bounds(values: [f64; 3]) -> (f64, f64) {
 /// around the eye or behind it.
 fn tangents(at: f64, depth: f64, radius: f64) -> Option<(f64, f64)> {
     let distance = at.hypot(depth);
-    if distance <= radius * 1.000_001 {
+    if distance <= radius * (1.0 + AT_THE_SIDE) {
         return None;
     }
     let (middle, half) = (at.atan2(depth), (radius / distance).asin());
-    let limit = std::f64::consts::FRAC_PI_2 - 1e-6;
+    let limit = std::f64::consts::FRAC_PI_2 - AT_THE_SIDE;
     let is_ahead = middle - half > -limit && middle + half < limit;
     is_ahead.then(|| ((middle - half).tan(), (middle + half).tan()))
 }

@@ -205,8 +205,8 @@ impl<R: Real> Primitive<R> for PackedSphere<R> {
     }
 }
 
-/// disc = R² - |x + b·d|² with b = -d·x: the square of the ray's distance from the centre is not a
-/// difference of large numbers. Needs |d| = 1.
+/// The roots by the discriminant R² - |x + b·d|² with b = -d·x: the square of the ray's distance from the centre is
+/// not a difference of large numbers. Needs |d| = 1.
 ///
 /// Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection", Ray
 /// Tracing Gems (2019), ch. 7.
@@ -217,7 +217,8 @@ fn stable<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> Roots<L> {
     (b - half_chord, b + half_chord)
 }
 
-/// b and disc.
+/// The distance b = -d·x along the ray to the point nearest to the centre, and the discriminant R² - |x + b·d|²,
+/// which is negative for a miss.
 #[inline(always)]
 fn perpendicular<L: SimdFloat>(x: Vec3<L>, d: Vec3<L>, radius: L) -> (L, L) {
     let b = -d.dot(x);
@@ -367,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_a_miss() {
+    fn a_sphere_at_nan_is_missed() {
         let sphere = PackedSphere {
             center: Vec3::new(0.0, 0.0, f32::NAN),
             radius: 1.0,
@@ -395,7 +396,7 @@ mod tests {
         }
 
         #[test]
-        fn from_the_wall_only_the_far_side_is_met(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
+        fn a_ray_from_the_surface_hits_only_the_far_side(turn in prop::array::uniform3(0.0..6.0_f64), d in prop::array::uniform3(-1.0..1.0_f64)) {
             let Some(d) = DVec3::from(d).try_normalize() else { return Ok(()) };
             let (ray, sphere, _) = aimed(3.0, 0.2, turn);
             let (point, normal) = refined(&ray, &sphere, intersect(SphereMethod::Stable, &ray, &sphere));

@@ -99,8 +99,8 @@ impl<R: SimdReal> Band<'_, R> {
             in_band,
             in_tile,
         } = &mut *scratch;
-        let retracing = (control, self.retracer);
-        let mut engine = Engine::<L, TREE>::new(Kernel { token, plan }, work, retracing);
+        let kernel = Kernel { token, plan };
+        let mut engine = Engine::<L, TREE>::new(kernel, work, control, self.retracer);
         in_band.keep_seen(self.candidates, plan, &self.place.rows, |seen| seen.rows);
         for left in self.place.columns.clone().step_by(self.tile) {
             let tile = Tile {

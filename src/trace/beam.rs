@@ -250,7 +250,7 @@ mod tests {
             let rays: Vec<Ray<f64>> = origins.iter().zip(&turns)
                 .filter_map(|(&origin, &turn)| Some(Ray { origin: Vec3::from_dvec3(origin), direction: Vec3::from_dvec3((axis + turn).try_normalize()?) })).collect();
             prop_assume!(!rays.is_empty());
-                        let beam = beam_around((), rays.iter().map(|&rays| (true, rays)));
+            let beam = beam_around((), rays.iter().map(|&rays| (true, rays)));
             let on_ray = rays[pick % rays.len()].at(at).to_dvec3();
             let ball = Ball { center: on_ray + off * (size * 0.999 / off.length().max(1.0)), radius: size };
             prop_assert!(is_met(beam, ball));

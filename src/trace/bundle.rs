@@ -166,9 +166,7 @@ impl<L: SimdFloat> Bundle<L> {
         let [below, above] = &self.origins;
         (above.x - below.x) * below.x.like_f64(0.5)
     }
-}
 
-impl<L: SimdFloat> Bundle<L> {
     /// Returns which boxes of a node any of the rays in `lanes` meets before its own `reach`, as bits; sets `nears`
     /// to the least distances at which they are entered.
     #[inline(always)]

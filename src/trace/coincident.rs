@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::candidates::Targets;
+use super::doubt::GRAZING_FACTOR;
 use super::intersect::{Kernel, Nearest};
 use super::paths::{Paths, real};
 use super::scan::Test;
@@ -12,10 +13,6 @@ use crate::plan::RankedObjects;
 use crate::primitive::{Blur, Primitive, WithPrimitive};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
-
-/// Coincident surfaces are searched for along the rays up to this many times the distance allowed between them:
-/// that is how far apart they are along a ray at 89 degrees from the normal.
-const GRAZING_FACTOR: f64 = 64.0;
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     /// Returns the nearest hits, replaced where another object in the same surface is to be shown.

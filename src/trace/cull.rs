@@ -68,7 +68,7 @@ impl Candidates {
         let (top, bottom) = (edge(tile.rows.start), edge(tile.rows.end));
         let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
         let corners = corners.map(|(x, y)| plan.view.rays(x, y));
-        let tolerance = R::from_f64(1e-5);
+        let tolerance = R::from_f64(FAR_CAUTION);
         self.planes_mut().retain(|&index| {
             let plane = &plan.primitives.planes[index as usize];
             corners.iter().any(|(origin, direction)| {

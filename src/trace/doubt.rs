@@ -7,9 +7,9 @@ use crate::primitive::{Blur, Primitive, SurfacePoint};
 use crate::scene::Methods;
 use crate::simd::{Mask as _, Real, SimdFloat};
 
-/// Two hits may swap places if they are no farther apart along a ray than this many times its lateral error: this
-/// covers surfaces that the ray meets at up to 89 degrees from their normals.
-const GRAZING_FACTOR: f64 = 64.0;
+/// Distance along a ray, as a multiple of the distance across a surface, up to which two hits may swap places or be on
+/// the same surface: enough for surfaces that the ray meets at up to 89 degrees from their normals (1 / cos 89° = 57).
+pub const GRAZING_FACTOR: f64 = 64.0;
 
 /// Share of the error along rays within which two hits may swap places for samples that search for an edge inside a
 /// pixel: they need not see again what is only in doubt where a surface is met at a grazing angle.

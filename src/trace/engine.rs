@@ -71,7 +71,8 @@ impl<'a, L: SimdFloat, const TREE: bool> Engine<'a, L, TREE> {
     pub fn new(
         kernel: Kernel<'a, L, TREE>,
         work: &'a mut Workspace<L>,
-        (control, retracer): (&'a RenderControl, Option<&'a dyn Retracer>),
+        control: &'a RenderControl,
+        retracer: Option<&'a dyn Retracer>,
     ) -> Self {
         Self {
             kernel,

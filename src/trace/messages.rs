@@ -109,7 +109,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pixels_hear_once_what_they_do_not_know() {
+    fn messages_from_unknown_sides_are_received_once() {
         let mut messages = EdgeMessages::new(3, 5..7);
         for (pixel, side) in [
             ([6, 2], LEFT),

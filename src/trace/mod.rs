@@ -90,7 +90,7 @@ mod cell;
 
 mod messages;
 
-mod borders;
+mod pixel_sides;
 
 mod lattice;
 

@@ -150,7 +150,8 @@ impl<R: Real> Order<R> {
                 number if number < first => 0,
                 _ => 1,
             };
-            self.keys.push(group << 12 | z << 2 | y << 1 | x);
+            self.keys
+                .push(group << (KEY_BITS - 2) | z << 2 | y << 1 | x);
         }
         let all = 0..self.keys.len() as u32;
         self.samples.clear();

@@ -1,7 +1,7 @@
 //! Queries by single rays, in double precision and without a picture: for what is drawn over the picture and for the
 //! depth of what it shows.
 //!
-//! The render thread runs them, in pieces that can be stopped.
+//! They run in pieces that can be stopped.
 
 use glam::DVec3;
 use rayon::current_num_threads;
@@ -105,7 +105,8 @@ const SURVEY_SIDE: u32 = 5;
 /// one per thread. Returns whether all are done.
 pub fn survey(
     take: &Take,
-    (query, aspect): (&SceneQuery, f64),
+    query: &SceneQuery,
+    aspect: f64,
     seen: &mut Vec<Vec<Landmark>>,
     control: &RenderControl,
 ) -> bool {

@@ -1,11 +1,11 @@
 //! The cells of a tile whose insides are examined. They are handled one by one, not in lanes: the code is compiled
 //! once for each precision, not for every vector width.
 
-use super::borders::PixelSides;
 use super::cell::Cell;
 use super::coverage::{CellFinding, CrossedCell};
 use super::lattice::{Inside, Lattice, Limits};
 use super::messages::{ALL, EdgeMessages};
+use super::pixel_sides::PixelSides;
 use super::samples::{EdgeDetail, Samples, Traced};
 use super::thresholds::{MAX_EXCESS, PIXEL_STEPS};
 use super::tile::{Tile, TileColors};
@@ -29,7 +29,7 @@ pub struct Refinement<R> {
     /// Cells whose colour may change evenly, and the samples in their middles.
     even: Vec<(Cell, u32)>,
     /// Which sides of the pixels are known.
-    borders: PixelSides,
+    sides: PixelSides,
     /// Number of samples that have been checked for what they tell the pixels beside them.
     checked: usize,
     /// Pixels that have received a message and are not divided yet.
@@ -86,7 +86,7 @@ impl<R: Real> Refinement<R> {
         }
         self.lattice.clear();
         self.lattice.add(tile, corners, &mut self.to_divide);
-        self.borders.start(tile, messages);
+        self.sides.start(tile, messages);
         self.checked = 0;
         self.cells.append(&mut self.to_divide);
         for pixel in &self.cells {
@@ -106,7 +106,7 @@ impl<R: Real> Refinement<R> {
     ) {
         self.clear();
         self.lattice.clear();
-        self.borders.start(tile, messages);
+        self.sides.start(tile, messages);
         self.checked = 0;
         for pixel in pixels {
             self.notify(*pixel);
@@ -116,8 +116,8 @@ impl<R: Real> Refinement<R> {
 
     /// Notes that a pixel of the tile, by its row and column in the picture, has received a message.
     fn notify(&mut self, pixel: [usize; 2]) {
-        let pixel = self.borders.cell_of(pixel);
-        self.borders.note(&pixel, ALL);
+        let pixel = self.sides.cell_of(pixel);
+        self.sides.note(&pixel, ALL);
         self.notified_pixels.push(pixel);
     }
 
@@ -128,7 +128,7 @@ impl<R: Real> Refinement<R> {
         self.to_divide.retain(|pixel| {
             let is_near_thin = lattice.is_near_thin(pixel);
             if is_near_thin {
-                self.borders.note(pixel, ALL);
+                self.sides.note(pixel, ALL);
                 lattice.subdivide(pixel, cells);
             }
             !is_near_thin
@@ -142,7 +142,7 @@ impl<R: Real> Refinement<R> {
     #[inline(never)]
     pub fn divide(&mut self) {
         for cell in self.to_divide.drain(..) {
-            self.borders.note(&cell, ALL);
+            self.sides.note(&cell, ALL);
             self.lattice.subdivide(&cell, &mut self.cells);
         }
     }
@@ -194,7 +194,7 @@ impl<R: Real> Refinement<R> {
             }
             match CrossedCell::of_colors(&cell, lattice, limits) {
                 Some(crossed) => {
-                    self.borders.note(&cell, crossed.sides());
+                    self.sides.note(&cell, crossed.sides());
                     self.crossed.push(crossed);
                 }
                 None => to_divide.push(cell.signatures_only()),
@@ -249,13 +249,13 @@ impl<R: Real> Refinement<R> {
         colors: &mut TileColors<R>,
     ) -> bool {
         for index in self.checked..self.lattice.len() {
-            let Some(side) = self.borders.side_of(self.lattice.point(index)) else {
+            let Some(side) = self.sides.side_of(self.lattice.point(index)) else {
                 continue;
             };
             if R::from_f64(MAX_EXCESS) < self.lattice.excess(index, side.ends) {
                 for (index, side) in side.notified_pixels.into_iter().flatten() {
-                    let pixel = self.borders.pixel(index);
-                    if self.borders.is_inside(index) {
+                    let pixel = self.sides.pixel(index);
+                    if self.sides.is_inside(index) {
                         self.notify(pixel);
                     } else {
                         messages.send(pixel, side);
@@ -267,7 +267,7 @@ impl<R: Real> Refinement<R> {
         self.divide_notified(tile, corners, colors);
         let is_done = self.cells.is_empty();
         if is_done {
-            self.borders.finish(tile, messages);
+            self.sides.finish(tile, messages);
         }
         !is_done
     }
@@ -302,7 +302,7 @@ impl<R: Real> Refinement<R> {
                 Inside::One => self.even.push((cell, 0)),
                 Inside::Several => match CrossedCell::of(&cell, lattice, limits) {
                     Some(crossed) => {
-                        self.borders.note(&cell, crossed.sides());
+                        self.sides.note(&cell, crossed.sides());
                         self.crossed.push(crossed);
                     }
                     None => self.to_divide.push(cell),

@@ -72,7 +72,7 @@ impl WithSimd<f64> for Retrace<'_> {
         let mut work = workspace_pool.take::<Workspace<L>>().unwrap_or_default();
         self.samples.pad(L::WIDTH);
         let kernel = Kernel { token, plan };
-        let mut engine = Engine::<L, true>::new(kernel, &mut work, (self.control, None));
+        let mut engine = Engine::<L, true>::new(kernel, &mut work, self.control, None);
         engine.trace(self.samples, candidates, self.edges, self.traced);
         workspace_pool.put(work);
     }

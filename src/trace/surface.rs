@@ -96,11 +96,10 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
     fn refine_alike_vectorized(
         self,
         hit_primitive: &HitPrimitive<L::Real>,
-        (rays, nearest, remaining): (&Ray<L>, &Nearest<L>, u64),
+        (rays, nearest, mut remaining): (&Ray<L>, &Nearest<L>, u64),
         mixed: &mut MixedMaterials<L>,
     ) -> Hit<L> {
         let mut gathered = Gathered::like(hit_primitive);
-        let mut remaining = remaining;
         while remaining != 0 {
             let lane = remaining.trailing_zeros() as usize;
             remaining &= remaining - 1;

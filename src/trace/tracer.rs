@@ -306,7 +306,7 @@ impl Tracer {
         let trace = |(index, pixels): (usize, &mut [P])| {
             let top = first + index * self.tile;
             let rows = top..top + pixels.len() / self.width;
-            let pieces = in_pieces(pixels, (self.width, piece_width)).into_par_iter();
+            let pieces = in_pieces(pixels, self.width, piece_width).into_par_iter();
             let pieces = pieces.enumerate().map(|(index, pixels)| {
                 let left = index * piece_width;
                 let place = Tile {
@@ -388,7 +388,7 @@ impl Tracer {
 }
 
 /// Splits rows of `width` pixels into pieces of `piece_width` columns: for each, its part of every row.
-fn in_pieces<P>(pixels: &mut [P], (width, piece_width): (usize, usize)) -> Vec<Vec<&mut [P]>> {
+fn in_pieces<P>(pixels: &mut [P], width: usize, piece_width: usize) -> Vec<Vec<&mut [P]>> {
     let mut pieces: Vec<Vec<&mut [P]>> = Vec::new();
     pieces.resize_with(width.div_ceil(piece_width), Vec::new);
     for row in pixels.chunks_mut(width) {

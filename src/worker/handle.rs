@@ -10,7 +10,7 @@ use super::jobs::{
 };
 use super::mailbox::Job;
 use super::render_thread;
-use super::shared::{Outbox, Shared};
+use super::shared::Shared;
 use super::task::spawn;
 use crate::image::Image;
 use crate::lab::Study;
@@ -47,7 +47,7 @@ impl Worker {
         let shared = Arc::new(Shared {
             mailbox: Mutex::default(),
             wakeup: Condvar::new(),
-            outbox: Mutex::<Outbox>::default(),
+            outbox: Mutex::default(),
             planner: Mutex::default(),
             until_quit: RenderControl::default(),
             wake: Box::new(wake),

@@ -227,7 +227,7 @@ pub struct ExportState {
     pub folder: PathBuf,
     /// Frames done so far.
     pub done: Exported,
-    /// Time that the render thread has spent on it, without waiting.
+    /// Time spent on tracing and writing it, without pauses.
     pub busy: Duration,
     /// Whether it is paused until it is told to resume.
     pub is_paused: bool,

@@ -106,13 +106,13 @@ pub struct Running {
     /// Where a still picture is to be written, if it is.
     pub save_to: Option<PathBuf>,
     /// Id of the export, if it is one.
-    pub export: Option<u64>,
+    export: Option<u64>,
     /// The sort of question, if it is one.
     question: Option<QuestionSort>,
     /// Stops it.
     pub control: Arc<RenderControl>,
     /// When it was started.
-    pub started: Instant,
+    started: Instant,
     /// Whether it is no longer wanted: once stopped, it does not return to the queue.
     pub is_given_up: bool,
 }

@@ -244,7 +244,7 @@ fn answer(
     let answer = match &mut job.question {
         Question::Survey(take, seen) => {
             let query = query.of(scene, &shared.planner());
-            survey(take, (query, scene.render.aspect_ratio()), seen, control)
+            survey(take, query, scene.render.aspect_ratio(), seen, control)
                 .then(|| Answer::Survey(Arc::clone(take), std::mem::take(seen)))
         }
         Question::Visible(name, camera, points) => {

@@ -31,6 +31,7 @@ pub struct Shared {
 pub struct Outbox {
     pub live: Option<Frame>,
     pub still: Option<Frame>,
+    /// Finished thumbnails, by the names that the caller gave them.
     pub thumbnails: Vec<(u64, Image)>,
     pub answers: Vec<Answer>,
     /// All exports, including those that have ended.

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_looks_out_wakes_once_there_is_something() {
+    fn poll_until_wakes_once_it_is_ready() {
         let looks = AtomicU32::new(0);
         let (sender, woken) = channel();
         let is_ready = move || looks.fetch_add(1, Ordering::Relaxed) == 3;

@@ -391,8 +391,9 @@ pub fn survey_flight(editor: &mut Editor) {
     while let Some(take) = editor.wanted_survey().cloned() {
         let mut seen = Vec::new();
         let scene = editor.scene();
-        let looked = (&SceneQuery::new(scene), scene.render.aspect_ratio());
-        assert!(survey(&take, looked, &mut seen, &RenderControl::default()));
+        let (query, aspect) = (SceneQuery::new(scene), scene.render.aspect_ratio());
+        let control = RenderControl::default();
+        assert!(survey(&take, &query, aspect, &mut seen, &control));
         editor.apply(Action::Time(Time::Surveyed(take, seen)));
     }
 }

@@ -192,8 +192,7 @@ mod tests {
                 for index in 0..slicing.count() {
                     let tree = slicing.tree_bounds(&corners, index);
                     prop_assert_eq!(tree, original.tree_bounds(&[a, b, c], index));
-                    let BoundingBox { low, high } = slicing.bounds(&single, index);
-                    let kernel = BoundingBox { low: low.in_precision(), high: high.in_precision() };
+                    let kernel = slicing.bounds(&single, index).in_precision();
                     prop_assert!(holds(&tree, &kernel), "{index} of {slicing:?}: {tree:?} {kernel:?}");
                 }
             }
