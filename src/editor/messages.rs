@@ -152,11 +152,12 @@ impl Editor {
 /// `name`; `None` if there were none.
 pub fn replaced_flight(name: &str, animation: &Animation) -> Option<String> {
     let keys = counted(animation.keys.len(), "key");
-    let recording = match animation.take {
-        Some(_) => " and the recording",
-        None => "",
+    let (recording, them) = match (&animation.take, animation.keys.len()) {
+        (Some(_), _) => (" and the recording", "them"),
+        (None, 1) => ("", "it"),
+        (None, _) => ("", "them"),
     };
     let sentence =
-        format!("{name} has replaced {keys} of the camera{recording}; undo brings them back");
+        format!("{name} has replaced {keys} of the camera{recording}; undo brings {them} back");
     (!animation.keys.is_empty()).then_some(sentence)
 }

@@ -135,8 +135,13 @@ impl Camera {
 
     /// Vertical field of view in radians (perspective): 2·atan(½ / projection distance).
     pub fn field_of_view_radians(&self) -> f64 {
-        2.0 * (0.5 / self.projection_distance).atan()
+        field_of_view_radians(self.projection_distance)
     }
+}
+
+/// The vertical field of view in radians at a projection distance in image heights.
+pub fn field_of_view_radians(projection_distance: f64) -> f64 {
+    2.0 * (0.5 / projection_distance).atan()
 }
 
 impl Framing {

@@ -73,7 +73,7 @@ pub use animation::{
     SAME_TIME, Sample, Take, Target, Track, Value,
 };
 pub use aspect::Aspect;
-pub use camera::{Bookmark, Camera, Framing, Projection};
+pub use camera::{Bookmark, Camera, Framing, Projection, field_of_view_radians};
 pub use check::{MAX_COORDINATE, MAX_FACTOR, PROJECTION_DISTANCES, Problem, check, check_edit};
 pub use coincidence::{Coincidence, Overlap, coincidences};
 pub use differences::differences;

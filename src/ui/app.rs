@@ -187,7 +187,7 @@ impl App {
     }
 
     /// Whether something is being dragged or flown.
-    pub(super) fn is_gesture(&mut self, ctx: &Context) -> bool {
+    pub(super) fn is_gesture(&self, ctx: &Context) -> bool {
         ctx.input(|input| input.pointer.any_down()) || self.flying.is_gesture(ctx)
     }
 

@@ -1,6 +1,7 @@
 //! Asking for a path: with the desktop's own dialog, on a separate thread, or with a prompt in the window if the
 //! desktop offers none.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use egui::Context;
@@ -104,6 +105,16 @@ pub trait Dialogs {
     fn ask(&mut self, ctx: &Context, ask: &Ask, suggested: PathBuf) -> Background<Option<PathBuf>>;
 }
 
+/// The folder and the file name with which a dialog starts, given the suggested path: a file that is written is in its
+/// folder, and anything else is looked for in the suggested folder itself.
+fn start_of<'a>(ask: &Ask, suggested: &'a Path) -> (Option<&'a Path>, Option<&'a OsStr>) {
+    if ask.writes() {
+        (suggested.parent(), suggested.file_name())
+    } else {
+        (Some(suggested), None)
+    }
+}
+
 /// The desktop's dialogs.
 #[derive(Debug)]
 pub struct NativeDialogs;
@@ -124,12 +135,11 @@ impl Dialogs for NativeDialogs {
                     dialog.add_filter("Camera path", ask.endings())
                 }
             };
-            if let Some(folder) = suggested.parent().filter(|folder| folder.is_dir()) {
+            let (folder, name) = start_of(&ask, &suggested);
+            if let Some(folder) = folder.filter(|folder| folder.is_dir()) {
                 dialog = dialog.set_directory(folder);
             }
-            if ask.writes()
-                && let Some(name) = suggested.file_name()
-            {
+            if let Some(name) = name {
                 dialog = dialog.set_file_name(name.to_string_lossy());
             }
             let path = if ask == Ask::ExportFolder {

@@ -17,6 +17,8 @@ pub enum Dropped {
         /// Keys of a camera.
         path: Option<PathBuf>,
     },
+    /// None of them can be read; this is the first.
+    Unknown(PathBuf),
 }
 
 impl Dropped {
@@ -31,8 +33,7 @@ impl Dropped {
         let (scene, path) = (first_with("ron"), first_with("csv"));
         match (scene, path) {
             (Some(scene), _) => Some(Self::Scene(scene)),
-            // Opening it reports why it is not a scene.
-            (None, None) if meshes.is_empty() => files.first().cloned().map(Self::Scene),
+            (None, None) if meshes.is_empty() => files.first().cloned().map(Self::Unknown),
             (None, path) => Some(Self::Parts { meshes, path }),
         }
     }
@@ -45,6 +46,7 @@ impl Dropped {
         let used = match self {
             Self::Scene(scene) => is_wanted(&scene),
             Self::Parts { path, .. } => path.is_some(),
+            Self::Unknown(_) => false,
         };
         wanted - usize::from(used)
     }
@@ -76,7 +78,8 @@ mod tests {
             parts(&["a.ply", "b.stl"], Some("c.CSV"))
         );
         assert_eq!(dropped(&["a.ply", "s.ron"]), scene("s.ron"));
-        assert_eq!(dropped(&["a.txt", "b.txt"]), scene("a.txt"));
+        let unknown = Dropped::Unknown("a.txt".into());
+        assert_eq!(dropped(&["a.txt", "b.txt"]), Some(unknown));
         let left = |names: &[&str]| {
             let files: Vec<_> = names.iter().map(PathBuf::from).collect();
             Dropped::of(&files).map(|dropped| dropped.unused_count(&files))

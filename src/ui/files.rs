@@ -390,7 +390,7 @@ impl Files {
     }
 
     fn take_finished_read(&mut self, ctx: &Context, editor: &mut Editor, wait: Duration) {
-        let is_free = self.is_free();
+        let is_free = self.is_free() && !editor.is_recording();
         let first = self.reading.front_mut().filter(|_| is_free);
         let Some(read) = first.and_then(|reading| reading.wait(wait)) else {
             return;

@@ -35,11 +35,14 @@ pub struct Finder {
     /// Whether the finder is shown.
     pub is_open: bool,
     text: String,
+    /// What matches the text, found in this revision of the document; `None` until it is looked for.
+    found: Option<(u64, Vec<Match>)>,
     /// Index of the marked match.
     marked: usize,
 }
 
 /// A match.
+#[derive(Debug)]
 struct Match {
     name: String,
     /// Text on the right: its keys, its kind, or why it is not possible.
@@ -60,9 +63,11 @@ impl Match {
     }
 }
 
+#[derive(Clone, Debug)]
 enum Target {
     Command(Command),
     Selection(Selection),
+    Group(String),
     Addition(Addition),
 }
 
@@ -142,6 +147,7 @@ impl Finder {
             match target {
                 Target::Command(command) => out.commands.push(command),
                 Target::Selection(selection) => out.select(selection),
+                Target::Group(name) => out.select(Selection::of_group(editor.scene(), &name)),
                 Target::Addition(addition) => out.edit(addition.edit(editor.shown())),
             }
         }
@@ -159,11 +165,15 @@ impl Finder {
         let field = ui.add(field).hint("Enter runs the highlighted entry");
         field.request_focus();
         if field.changed() {
-            self.marked = 0;
+            (self.marked, self.found) = (0, None);
             // The first frame after typing into an empty field shows nothing.
             ui.request_repaint();
         }
-        let matches = find_matches(ui, sources, &self.text);
+        // A scene may have very many things.
+        let revision = sources.0.revision();
+        let found = self.found.take().filter(|(of, _)| *of == revision);
+        let found = found.unwrap_or_else(|| (revision, find_matches(ui, sources, &self.text)));
+        let matches = &self.found.insert(found).1;
         let last = matches.len().saturating_sub(1);
         self.marked = (self.marked + down).saturating_sub(up).min(last);
         let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
@@ -193,8 +203,8 @@ impl Finder {
         if matches.is_empty() {
             ui.weak("Nothing found");
         }
-        let entry = matches.into_iter().nth(chosen?)?;
-        entry.is_enabled.then_some(entry.target)
+        let entry = matches.get(chosen?)?;
+        entry.is_enabled.then(|| entry.target.clone())
     }
 }
 
@@ -279,7 +289,7 @@ fn aliases_of(entry: &Match) -> &'static str {
             let mut aliases = ALIASES.iter();
             aliases.find_map(|(command, words)| (command == own).then_some(*words))
         }
-        Target::Addition(_) | Target::Selection(_) => {
+        Target::Addition(_) | Target::Selection(_) | Target::Group(_) => {
             let mut aliases = ADDITION_ALIASES.iter();
             aliases.find_map(|(name, words)| (entry.name == *name).then_some(*words))
         }
@@ -399,8 +409,11 @@ fn scene_items<'a>(
         .chain(all)
         .filter(move |(name, ..)| matches_query(name));
     all.map(|(name, kind, item)| {
-        let selection = item.map_or_else(|| Selection::of_group(scene, name), Selection::from);
-        Match::of(name.to_owned(), kind, Target::Selection(selection))
+        let target = match item {
+            Some(item) => Target::Selection(item.into()),
+            None => Target::Group(name.to_owned()),
+        };
+        Match::of(name.to_owned(), kind, target)
     })
 }
 

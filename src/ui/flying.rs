@@ -31,6 +31,8 @@ const SPEED_SHOWN_SECONDS: f64 = 1.2;
 const MAX_FRAME_SECONDS: f64 = 0.1;
 /// Seconds for which the control key must be held alone before it flies down: it also begins shortcuts.
 const CTRL_DELAY: f64 = 0.4;
+/// Relative change of the distance per point of wheel movement.
+pub const DOLLY: f64 = 0.003;
 /// Seconds without the wheel after which its next turn is an undo step of its own.
 const WHEEL_QUIET: f64 = 0.4;
 
@@ -168,15 +170,13 @@ impl Flying {
             return 0.0;
         }
         // With Shift, which flies faster, egui reports the wheel as scrolling to the side.
-        let turned = ui.input(|input| {
+        let (turned, zoom) = ui.input(|input| {
             let delta = input.smooth_scroll_delta();
-            if input.modifiers.shift {
-                delta.x + delta.y
-            } else {
-                delta.y
-            }
+            let across = if input.modifiers.shift { delta.x } else { 0.0 };
+            // With Ctrl, it reports a zoom, as it does for two fingers that move apart.
+            (delta.y + across, input.zoom_delta())
         });
-        let wheel = f64::from(turned);
+        let wheel = f64::from(turned) + f64::from(zoom).ln() / DOLLY;
         if wheel == 0.0 {
             return 0.0;
         }
@@ -197,8 +197,8 @@ impl Flying {
     }
 
     /// Whether the speed was changed a moment ago and is to be shown.
-    pub fn is_speed_shown(&mut self, ctx: &Context) -> bool {
-        is_recent(ctx, &mut self.changed_at, SPEED_SHOWN_SECONDS)
+    pub fn is_speed_shown(&self, ctx: &Context) -> bool {
+        is_recent(ctx, self.changed_at, SPEED_SHOWN_SECONDS)
     }
 
     /// Whether keys move the camera, in which case they are not shortcuts.
@@ -207,8 +207,8 @@ impl Flying {
     }
 
     /// Whether a flight or a turn of the wheel goes on, which is one undo step.
-    pub fn is_gesture(&mut self, ctx: &Context) -> bool {
-        let is_turned = is_recent(ctx, &mut self.wheel_at, WHEEL_QUIET);
+    pub fn is_gesture(&self, ctx: &Context) -> bool {
+        let is_turned = is_recent(ctx, self.wheel_at, WHEEL_QUIET);
         let any_down = FLIGHT.iter().any(|flight| is_down(ctx, flight));
         is_turned || self.ctrl.is_flying() || any_down
     }
@@ -317,11 +317,11 @@ pub fn drag_of(picture: &Response) -> Vec2 {
 }
 
 /// Returns whether something happened less than `seconds` ago; if so, requests a frame for when that is over.
-fn is_recent(ctx: &Context, at: &mut Option<f64>, seconds: f64) -> bool {
+fn is_recent(ctx: &Context, at: Option<f64>, seconds: f64) -> bool {
     let now = ctx.input(|input| input.time);
-    *at = at.filter(|at| now - at < seconds);
-    if at.is_some() {
+    let is_recent = at.is_some_and(|at| now - at < seconds);
+    if is_recent {
         ctx.request_repaint_after_secs(seconds as f32);
     }
-    at.is_some()
+    is_recent
 }

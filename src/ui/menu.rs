@@ -62,7 +62,7 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
     entry(ui, "New", Command::Leave(Next::New), out);
     entry(ui, "Open…", Command::Leave(Next::Choose), out);
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
-        ui.menu_button("Open recent", |ui| {
+        let menu = ui.menu_button("Open recent", |ui| {
             for path in recent {
                 let name = path
                     .file_name()
@@ -73,6 +73,9 @@ fn file_menu(ui: &mut Ui, (recent, examples): (&[PathBuf], &mut Examples), out: 
                 on_click(ui, button, (&hint, open), out);
             }
         });
+        if recent.is_empty() {
+            menu.response.hint("No scene was opened or saved yet");
+        }
     });
     ui.menu_button("Open example", |ui| examples.menu(ui, out));
     entry(ui, "Import mesh…", Command::Ask(Ask::ImportMesh), out);

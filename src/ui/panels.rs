@@ -187,7 +187,7 @@ impl App {
             Some(size) => self.still.show(ui, place, &mut self.pictures, size),
             None => self.pictures.screen.show(ui, place),
         };
-        if self.editor.mode == Mode::Live {
+        if self.editor.mode != Mode::HighRes {
             self.still.leave();
         }
         if self.layout.histogram {

@@ -79,6 +79,10 @@ impl App {
         }
         match dropped {
             None => {}
+            Some(Dropped::Unknown(path)) => self.editor.notify(format!(
+                "{} is no scene (.ron), mesh or camera path (.csv)",
+                path.display()
+            )),
             Some(Dropped::Scene(path)) => self.leave_to(ctx, Next::Open(path)),
             Some(Dropped::Parts { path: Some(_), .. }) if self.files.is_asking() => {
                 self.editor

@@ -94,7 +94,7 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     let cancel = egui::Button::new(RichText::new("Cancel").small());
     if ui
         .add(cancel)
-        .hint("Cancel the high-res picture (Esc)")
+        .hint("Cancel the high-res picture; it is not saved")
         .clicked()
     {
         out.commands.push(Command::CancelStill);
@@ -118,13 +118,14 @@ fn progress(ui: &mut Ui, done: u64, total: u64, elapsed: Duration, out: &mut UiR
     ui.request_repaint_after(Duration::from_millis(50));
 }
 
-/// Formats a duration in seconds or minutes, rounded up.
+/// Formats a duration in seconds, minutes or hours, rounded up.
 pub fn time_in_words(seconds: f64) -> String {
-    if seconds < 90.0 {
-        format!("{:.0}\u{a0}s", seconds.ceil())
-    } else {
-        format!("{:.0}\u{a0}min", (seconds / 60.0).ceil())
-    }
+    let (length, unit) = match seconds {
+        ..90.0 => (seconds, "s"),
+        ..7200.0 => (seconds / 60.0, "min"),
+        _ => (seconds / 3600.0, "h"),
+    };
+    format!("{:.0}\u{a0}{unit}", length.ceil())
 }
 
 /// Describes when the work was last autosaved.

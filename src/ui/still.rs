@@ -13,6 +13,8 @@ use crate::plan::Region;
 
 /// Points of a touchpad that count as one step of a wheel.
 const POINTS_PER_STEP: f32 = 50.0;
+/// Steps that two fingers make by moving apart to twice their distance.
+const STEPS_PER_DOUBLING: f32 = 1.0;
 /// Least time between two steps, in seconds.
 const MIN_STEP_INTERVAL: f64 = 0.08;
 
@@ -129,6 +131,7 @@ fn wheel(ui: &Ui) -> f32 {
                 MouseWheelUnit::Point => delta.y / POINTS_PER_STEP,
                 MouseWheelUnit::Line | MouseWheelUnit::Page => delta.y.signum(),
             },
+            Event::Zoom(factor) => factor.log2() * STEPS_PER_DOUBLING,
             _ => 0.0,
         });
         wheel_steps.sum()

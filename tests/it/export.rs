@@ -898,7 +898,7 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
     harness.type_name("frames", "1-40:3");
     harness.type_into("export width", "48");
     harness.type_into("export height", "48");
-    harness.assert_says("rayTrace1.ppm … rayTrace40.ppm");
+    harness.assert_says("rayTrace0001.png … rayTrace0040.png");
     see(&mut harness, "14 frames to make");
     harness.click("gif");
     harness.click("Start export");
@@ -918,13 +918,14 @@ fn the_window_exports_what_the_command_line_does_and_edits_do_not_leak() {
             .is_some_and(|gif| gif.starts_with(b"GIF89a"))
     );
     let alone = harness.folder.path().join("alone");
-    done(&mut export(&alone, &["--frames", "1-40:3"]));
+    let format = ["--format", "png", "--name", "rayTrace%04d"];
+    done(export(&alone, &format).args(["--frames", "1-40:3"]));
     assert!(
         made == files(&alone),
         "the same bytes, as the scene was at the start"
     );
     harness.assert_says("14 frames in");
-    harness.assert_says("ppm + gif");
+    harness.assert_says("png + gif");
     harness.assert_says("14 frames and frames.gif");
     harness.click("Remove");
     // With the lights' markers hidden, the frames that showed one are different.
@@ -1014,7 +1015,7 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
             .is_none()
     );
     assert!(harness.window.state().is_exporting());
-    wait_until("a frame", || folder.join("rayTrace3.ppm").exists());
+    wait_until("a frame", || folder.join("rayTrace0003.png").exists());
     // With unsaved changes, a single question covers both.
     harness.window.key_press(Key::O);
     harness.window.step();

@@ -1,5 +1,6 @@
 //! Export settings, and their fields in the window.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,12 +8,10 @@ use egui::{Align2, ComboBox, TextEdit, Ui};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::editor::Editor;
-use crate::export::{
-    Frames, FramesError, Pattern, PatternError, Sequence, SequenceError, Video, VideoError,
-};
+use crate::export::{Frames, Pattern, Sequence, Video};
 use crate::files::absolute;
 use crate::image::Format;
-use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Problem, Sampling, Scene};
+use crate::scene::{Animation, FRAME_RATES, MAX_SIDE, Method as _, Sampling, Scene};
 use crate::ui::commands::Command;
 use crate::ui::dialogs::Ask;
 use crate::ui::hint::Hinted as _;
@@ -24,6 +23,8 @@ use crate::ui::theme::ROW;
 
 /// Width of the window's fields, in points.
 pub const FIELDS: f32 = 360.0;
+/// The names of frames unless others are chosen: padded with zeros, they sort in playback order everywhere.
+const PADDED_NAME: &str = "rayTrace%04d";
 /// The word for "no video" in the window and in stored settings.
 const NO_VIDEO: &str = "none";
 
@@ -130,8 +131,8 @@ impl Settings {
             folder: folder.join(format!("{stem} frames")).display().to_string(),
             frames: own.frames(own.fps),
             own,
-            name: Pattern::default().text(),
-            format: Format::Ppm,
+            name: PADDED_NAME.to_owned(),
+            format: Format::Png,
             width: scene.render.width,
             height: scene.render.height,
             is_free: false,
@@ -220,16 +221,19 @@ impl Settings {
     }
 
     /// The frame sequence of these settings for a scene.
-    pub fn sequence(&self, scene: &Scene) -> Result<Sequence, SettingsError> {
+    ///
+    /// # Errors
+    /// Why these settings cannot be exported, in words for the user.
+    pub fn sequence(&self, scene: &Scene) -> Result<Sequence, Box<dyn Error>> {
         let mut scene = scene.clone();
         (scene.render.width, scene.render.height) = (self.width, self.height);
         scene.render.antialias = self.antialias;
         scene.animation_mut().frames_per_second = self.fps;
-        crate::scene::check(&scene).map_err(SettingsError::Scene)?;
+        crate::scene::check(&scene).map_err(|problem| problem.sentence)?;
         let frames = Frames::parse(&self.frames)?;
         let pattern = Pattern::parse(&self.name)?;
         if self.folder.trim().is_empty() {
-            return Err(SettingsError::NoFolder);
+            return Err("choose a folder for the frames".into());
         }
         let folder = typed_path(&self.folder);
         let sequence = Sequence::new(Arc::new(scene), Some(frames), pattern, self.format, folder)?;
@@ -254,29 +258,6 @@ impl Settings {
 fn scaled(side: u32, numerator: u32, denominator: u32) -> u32 {
     let length = f64::from(side) * f64::from(numerator) / f64::from(denominator);
     (length.round() as u32).clamp(1, MAX_SIDE)
-}
-
-/// Why these settings cannot be exported.
-#[derive(Debug, thiserror::Error)]
-pub enum SettingsError {
-    /// The scene is not valid with this size or frame rate.
-    #[error("{}", .0.sentence)]
-    Scene(Problem),
-    /// The text is not a list of frames.
-    #[error(transparent)]
-    Frames(#[from] FramesError),
-    /// The name pattern has no placeholder for the frame number.
-    #[error(transparent)]
-    Pattern(#[from] PatternError),
-    /// The animation has no such frames.
-    #[error(transparent)]
-    Sequence(#[from] SequenceError),
-    /// This kind of video cannot hold these frames.
-    #[error(transparent)]
-    Video(#[from] VideoError),
-    /// No folder is given.
-    #[error("choose a folder for the frames")]
-    NoFolder,
 }
 
 /// Buttons for sets of settings that belong together.
@@ -309,14 +290,11 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         ] {
             if ui.button(name).hint(hint).clicked() {
                 settings.format = format;
-                // Zero-padded names sort in playback order; the original program did not pad its numbers.
-                let is_original = format == Format::Ppm;
-                let name = if is_original {
-                    "rayTrace%d"
-                } else {
-                    "rayTrace%04d"
+                // The original program did not pad its numbers.
+                settings.name = match format {
+                    Format::Ppm => Pattern::default().text(),
+                    Format::Png | Format::Exr => PADDED_NAME.to_owned(),
                 };
-                name.clone_into(&mut settings.name);
                 settings.antialias = antialias;
                 let size = |side: u32| if is_half { side.div_ceil(2) } else { side };
                 (settings.width, settings.height) = (size(scene_size.0), size(scene_size.1));

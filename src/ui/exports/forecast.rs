@@ -13,7 +13,7 @@ use crate::plan::{Planner, RenderRequest};
 use crate::trace::{RenderControl, Threads};
 use crate::ui::pictures::Pictures;
 use crate::ui::status::time_in_words;
-use crate::words::counted;
+use crate::words::{counted, short_number};
 use crate::worker::Background;
 
 /// Approximate size of a PNG relative to a PPM, used until it is measured on a picture.
@@ -165,7 +165,7 @@ impl Forecast {
             let megabytes = pixels * self.bytes(settings.format) * missing as f64 / 1e6;
             let frame = self.speed.frame_seconds.filter(|_| is_known);
             let seconds = frame.map(|seconds| seconds * missing as f64);
-            format!("{}, {megabytes:.0} MB", about(seconds))
+            format!("{}, {} MB", about(seconds), short_number(megabytes))
         };
         let video = settings.video(sequence).map(|(path, video)| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -90,14 +90,11 @@ impl Exports {
         // Exports that failed have already reported it.
         let unreported = || interrupted.iter().filter(|order| order.failure.is_none());
         if let Some(order) = unreported().next() {
-            let more = match unreported().count() {
-                1 => String::new(),
-                more => format!(" and {} more", more - 1),
-            };
-            editor.notify(format!(
-                "An export is not finished: {}{more}. Export animation in the File menu resumes it.",
-                order.name
-            ));
+            let name = &order.name;
+            editor.notify(match unreported().count() {
+                1 => format!("An export is not finished: {name}. Export animation in the File menu resumes it."),
+                count => format!("{count} exports are not finished, among them {name}. Export animation in the File menu resumes them."),
+            });
         }
         Self {
             folder,

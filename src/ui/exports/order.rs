@@ -1,9 +1,10 @@
 //! The data needed to resume an export, kept on disk until it has ended, so that a killed program loses none of it.
 
+use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::fields::{Settings, SettingsError};
+use super::fields::Settings;
 use crate::editor::Editor;
 use crate::export::Sequence;
 use crate::scene::{Document, Leftover, Recovery, Scene};
@@ -116,8 +117,8 @@ impl ExportOrder {
     /// The frame sequence of the order.
     ///
     /// # Errors
-    /// [`SettingsError`], if this version of the program no longer accepts the settings.
-    pub fn sequence(&self) -> Result<Sequence, SettingsError> {
+    /// Why this version of the program does not accept the settings, in words for the user.
+    pub fn sequence(&self) -> Result<Sequence, Box<dyn Error>> {
         self.settings.sequence(&self.scene)
     }
 

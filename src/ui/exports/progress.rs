@@ -89,7 +89,8 @@ pub fn show_state(
         ui.add(bar.text(RichText::new(text).small().color(palette(ui.ctx()).text)));
         if let Some(video) = making {
             // Same layout as while the frames were made, so that a click meant for one button does not hit another.
-            ui.add_enabled(false, Button::new("Pause"));
+            ui.add_enabled(false, Button::new("Pause"))
+                .hint("A video cannot be paused");
             if ui.button("Cancel").hint("Its frames are kept").clicked() {
                 video.stop();
             }

@@ -6,6 +6,7 @@ use super::title::{name_field, title};
 use crate::editor::{Edit, Editor, free_bookmark_name};
 use crate::scene::{
     Bookmark, Camera, MAX_COORDINATE, Orientation, PROJECTION_DISTANCES, Projection,
+    field_of_view_radians,
 };
 use crate::ui::commands::Command;
 use crate::ui::icons;
@@ -56,9 +57,9 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         let size = vec2(ui.available_width(), ROW);
         let layout = Layout::right_to_left(Align::Center);
         ui.allocate_ui_with_layout(size, layout, |ui| {
-            let mut bookmarks = before.clone();
             let remove = icons::button(ui, icons::CLOSE, &format!("Remove {name}"));
             if remove.clicked() {
+                let mut bookmarks = before.clone();
                 bookmarks.remove(index);
                 return out.edit(Edit::Bookmarks(bookmarks, "Remove bookmark"));
             }
@@ -71,9 +72,10 @@ fn bookmarks(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
                 format!("bookmark {}", index + 1),
             );
             if let Some(name) = name_field(ui, &label, id, name) {
-                let mut others = before.clone();
-                others.remove(index);
-                bookmarks[index].name = free_bookmark_name(&others, &name);
+                let mut bookmarks = before.clone();
+                let renamed = bookmarks.remove(index);
+                let name = free_bookmark_name(&bookmarks, &name);
+                bookmarks.insert(index, Bookmark { name, ..renamed });
                 out.edit(Edit::Bookmarks(bookmarks, "Rename bookmark"));
             }
         });
@@ -127,15 +129,17 @@ fn projection_rows(rows: &mut FieldRows, camera: &mut Camera) {
         &mut camera.projection_distance,
     );
     let degrees = camera.field_of_view_radians().to_degrees();
+    let view_angle = |distance| field_of_view_radians(distance).to_degrees();
+    let distances = PROJECTION_DISTANCES;
     let mut edited = degrees;
     rows.number(
         &Field {
             name: "view angle",
             hint: "The same as an angle: vertical field of view in degrees",
             unit: "°",
-            default: Camera::default().field_of_view_radians().to_degrees(),
-            range: 0.001..=179.0,
-            speed: Some(0.2),
+            default: view_angle(defaults.projection_distance),
+            range: view_angle(*distances.end())..=view_angle(*distances.start()),
+            speed: None,
         },
         &mut edited,
     );

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Button, Id, Ui};
+use glam::DVec3;
 
 use super::camera::camera_rows;
 use super::items::angle;
@@ -100,10 +101,7 @@ fn value_rows(rows: &mut FieldRows, animation: &Animation, place: KeyId) -> Opti
     let mut value = key.value;
     match &mut value {
         Value::Number(number) => rows.number(&intensity_field(), number),
-        Value::Point(point) => {
-            let before = *point;
-            rows.vector(&point_field(&track.target), before, point);
-        }
+        Value::Point(point) => rows.vector(&point_field(&track.target), DVec3::ZERO, point),
     }
     (value != key.value).then(|| animation.with_value(&track.target, key.time, value))
 }
@@ -212,8 +210,7 @@ fn interpolation_rows(
         && can_orbit
     {
         let field = coordinate("around", "The point that the arc goes around");
-        let before = *around;
-        rows.vector(&field, before, around);
+        rows.vector(&field, DVec3::ZERO, around);
     }
     rows.choice(
         "easing",

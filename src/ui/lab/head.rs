@@ -1,14 +1,15 @@
 //! The row of controls above the chart: tabs, measuring, axes and limits.
 
-use egui::{Button, DragValue, Id, Label, RichText, Ui};
+use egui::{Button, Id, Label, RichText, Ui};
 
 use super::dots::{CostAxis, ErrorAxis};
-use super::panel::{Lab, LabRequest, Tab};
+use super::panel::{DEFAULT_BOUNDS, Lab, LabRequest, Tab};
 use crate::editor::Editor;
 use crate::lab::{cheapest_within, closest_within, costs_of_choices};
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::menu_entry::on_click;
+use crate::ui::number::{Field, drag_unlabelled};
 use crate::ui::requests::UiRequests;
 use crate::ui::theme::palette;
 
@@ -125,7 +126,7 @@ impl Lab {
     fn show_bounds(&mut self, ui: &mut Ui) {
         let costs = self.study.as_deref().map(costs_of_choices);
         // Keeps each button with its limit when the row wraps, which a nested row does not do by itself.
-        let mut limit = |words: &str, hint: &str, value: DragValue, name: &str| {
+        let mut limit = |words: &str, hint: &str, (field, value): (&Field, &mut f64)| {
             let id = Id::unique(words);
             let last_width = ui.data(|data| data.get_temp::<f32>(id));
             if last_width.is_some_and(|width| ui.available_size_before_wrap().x < width) {
@@ -136,20 +137,33 @@ impl Lab {
             }
             let row = ui.horizontal(|ui| {
                 let button = ui.add_enabled(costs.is_some(), Button::new(words));
-                ui.add(value).accessible_name(name);
-                button.hint(hint).clicked()
+                drag_unlabelled(ui, field, value);
+                let obstacle = costs.is_none().then_some("measure the scene first");
+                button.hint_unless(obstacle, hint).clicked()
             });
             ui.data_mut(|data| data.insert_temp(id, row.response.rect.width()));
             row.inner
         };
         let hint = "Choose the fastest dot whose error is no larger than this";
-        let rmse = DragValue::new(&mut self.bounds.0).max_decimals(5);
-        let rmse = rmse.speed(1e-5).range(1e-6..=1.0);
-        let by_error = limit("Fastest below", hint, rmse, "RMSE at most");
+        let rmse = Field {
+            name: "RMSE at most",
+            hint: "Root mean square error, where 1 is white (0.000001–1)",
+            unit: "",
+            default: DEFAULT_BOUNDS.0,
+            range: 1e-6..=1.0,
+            speed: Some(1e-5),
+        };
+        let by_error = limit("Fastest below", hint, (&rmse, &mut self.bounds.0));
         let hint = "Choose the most accurate dot that takes no longer than this";
-        let time = DragValue::new(&mut self.bounds.1).suffix(" ms");
-        let time = time.speed(0.1).range(0.01..=1e5);
-        let by_time = limit("Most accurate within", hint, time, "time at most");
+        let time = Field {
+            name: "time at most",
+            hint: "Milliseconds for a picture (0.01–100000)",
+            unit: " ms",
+            default: DEFAULT_BOUNDS.1,
+            range: 0.01..=1e5,
+            speed: Some(0.1),
+        };
+        let by_time = limit("Most accurate within", hint, (&time, &mut self.bounds.1));
         let Some(costs) = costs else { return };
         let found = if by_error {
             cheapest_within(&costs, self.bounds.0, f64::INFINITY)

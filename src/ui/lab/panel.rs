@@ -30,6 +30,9 @@ const PICTURE_SIDE: u32 = 256;
 /// Width of the column with details of a dot.
 pub(super) const DETAILS_WIDTH: f32 = 300.0;
 
+/// The limits for choosing a dot before others are chosen: RMSE and milliseconds.
+pub(super) const DEFAULT_BOUNDS: (f64, f64) = (EIGHT_BIT_FLOOR, 100.0);
+
 /// A request of the lab to the render thread.
 pub enum LabRequest {
     /// Measure this study.
@@ -92,7 +95,7 @@ impl Lab {
             chosen: None,
             mode: ComparisonMode::Picture,
             comparison: Comparison::default(),
-            bounds: (EIGHT_BIT_FLOOR, 100.0),
+            bounds: DEFAULT_BOUNDS,
             machine: format!(
                 "{}, {}",
                 counted(Threads::available(), "thread"),
@@ -340,7 +343,8 @@ fn looks_like(one: &Scene, other: &Scene) -> bool {
     };
     let (objects, lights) = (other.objects.iter(), other.lights.iter());
     without_lists(one) == without_lists(other)
-        && one.objects.iter().map(surface).eq(objects.map(surface))
+        && (one.objects.is_same(&other.objects)
+            || one.objects.iter().map(surface).eq(objects.map(surface)))
         && one.lights.iter().map(source).eq(lights.map(source))
 }
 

@@ -32,7 +32,7 @@ use super::menu_entry::{ITEM_COMMANDS, entry, offer};
 use super::pack_drag::{assign_pack_edit, dropped_pack};
 use super::requests::UiRequests;
 use super::viewport::Place;
-use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection};
+use crate::editor::{Action, Edit, Editor, Item, ItemKind, Selection, Time};
 use crate::image::{ObjectMap, Thing};
 use crate::words::shortened;
 
@@ -131,7 +131,8 @@ impl Tools {
             painter: ui.painter().with_clip_rect(place.rect),
         };
         // During playback and through the shot camera, a drag would set a key in every frame.
-        let has_gizmo = !(editor.looks_through() || editor.timeline().is_playing);
+        let is_playing = editor.timeline().is_playing;
+        let has_gizmo = !(editor.looks_through() || is_playing);
         let hovered = response.hover_pos().filter(|_| self.drag.is_none());
         let target_handle = hovered
             .filter(|_| has_gizmo)
@@ -176,6 +177,10 @@ impl Tools {
             let (at, revision) = (response.interact_pointer_pos(), editor.shown_revision());
             self.click = at.map(|at| (at, modifiers, revision));
             self.clicked_at = if is_second { f64::NEG_INFINITY } else { now };
+        }
+        if is_playing && (response.clicked() || response.secondary_clicked()) {
+            // What is here is known only once the picture rests.
+            out.time(Time::Play(false));
         }
         self.select(&view, out);
         self.take_pack(ui, &view, response, out);

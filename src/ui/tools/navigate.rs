@@ -7,11 +7,10 @@ use super::screen::Screen;
 use super::subject::Movable;
 use crate::editor::Editor;
 use crate::scene::{Camera, Framing, Projection, around};
+use crate::ui::flying::DOLLY;
 
 /// Radians per point of mouse movement.
 const ORBIT: f64 = 0.008;
-/// Relative change of the distance per point of wheel movement.
-const DOLLY: f64 = 0.003;
 /// Factor by which a change of projection may change the apparent size.
 const MAX_SIZE_CHANGE: f64 = 3.0;
 /// Minimum size of what is framed, as a fraction of the whole scene.

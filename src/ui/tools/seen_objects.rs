@@ -119,9 +119,14 @@ impl SeenObjects {
             return;
         };
         let colors = palette(painter.ctx());
+        // What is hovered is one item, or a group of which nothing is selected.
+        if hovered
+            .first()
+            .is_some_and(|item| editor.selection().has(*item))
+        {
+            hovered.clear();
+        }
         let selected = editor.selection().items().to_vec();
-        let selected_set: HashSet<&Item> = selected.iter().collect();
-        hovered.retain(|item| !selected_set.contains(item));
         let wanted = [(colors.accent, selected), (colors.text, hovered)];
         for (outline, (color, items)) in self.outlines.iter_mut().zip(wanted) {
             let wanted = (*revision, color, items);
