@@ -116,10 +116,15 @@ pub fn finish(code: ExitCode) -> ExitCode {
 
 /// Prints a line to stderr about something that is not as requested, although the command goes on.
 pub fn report_warning(warning: &str) {
-    let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    report(&format!("warning: {warning}"));
 }
 
 /// Prints a line to stderr about an error.
 pub fn report_error(error: &str) {
-    let _ = writeln!(std::io::stderr(), "error: {error}");
+    report(&format!("error: {error}"));
+}
+
+/// Prints a line to stderr.
+pub fn report(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::error::{CliError, say};
+use super::error::{CliError, report, say};
 use super::scene::read_scene;
 use crate::export::save_image;
 use crate::image::{Film, render};
@@ -29,14 +29,10 @@ pub fn picture_instead_of_window(scene: Option<&Path>, reason: &str) -> Result<(
             (read_scene(path)?, PathBuf::from(name))
         }
     };
-    {
-        use std::io::Write as _;
-        let _ = writeln!(
-            std::io::stderr(),
-            "glint: no window: {reason}. A window needs a display (DISPLAY or WAYLAND_DISPLAY) and the packages {PACKAGES}.\n\
-             glint: commands such as `glint render` and `glint export` work without them; tracing the scene to a picture instead."
-        );
-    }
+    report(&format!(
+        "glint: no window: {reason}. A window needs a display (DISPLAY or WAYLAND_DISPLAY) and the packages {PACKAGES}.\n\
+         glint: commands such as `glint render` and `glint export` work without them; tracing the scene to a picture instead."
+    ));
     let request = RenderRequest::still(&scene);
     let threads = Threads::new(None)?;
     let traced = threads.run(|| render(&scene, &request, &RenderControl::default()));

@@ -36,7 +36,7 @@ pub fn gif(
     (file, path): (&File, &Path),
     go_on: &mut impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
-    let encoding_error = |error: gif::EncodingError| VideoError::disk(path, &error);
+    let encoding_error = |error: gif::EncodingError| VideoError::disk(path, error);
     let (width, height) = sequence.size();
     let file = BufWriter::new(file);
     let mut encoder =
@@ -62,7 +62,7 @@ pub fn gif(
             .map_err(encoding_error)
     })?;
     let mut file = encoder.into_inner().map_err(encoding_error)?;
-    file.flush().map_err(|error| VideoError::disk(path, &error))
+    file.flush().map_err(|error| VideoError::disk(path, error))
 }
 
 /// Estimates how long `threads` threads take to pack the frames of a sequence, if all are like `image`.
@@ -164,7 +164,7 @@ pub fn apng(
     go_on: &mut impl FnMut(usize) -> bool,
 ) -> Result<(), VideoError> {
     let (width, height) = sequence.size();
-    let encoding_error = |error: png::EncodingError| VideoError::disk(path, &error);
+    let encoding_error = |error: png::EncodingError| VideoError::disk(path, error);
     let mut file = BufWriter::new(file);
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -187,7 +187,7 @@ pub fn apng(
         writer.write_image_data(&image).map_err(encoding_error)
     })?;
     writer.finish().map_err(encoding_error)?;
-    file.flush().map_err(|error| VideoError::disk(path, &error))
+    file.flush().map_err(|error| VideoError::disk(path, error))
 }
 
 #[cfg(test)]

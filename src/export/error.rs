@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::image::FormatError;
 use crate::trace::PoolError;
 
+/// Any error.
+type Source = Box<dyn std::error::Error + Send + Sync>;
+
 /// The reason why a picture could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -95,45 +98,25 @@ pub enum VideoError {
         /// Its width and height in pixels.
         size: (u32, u32),
     },
-    /// A frame file was replaced by one of the same size, or the folder's manifest cannot be read.
+    /// A file cannot be read or written, or a frame file was replaced by one of the same size.
     #[error(transparent)]
-    Frames(#[from] ExportError),
-    /// A frame could not be read.
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Frame {
-        /// The frame's file.
-        path: PathBuf,
-        /// Error of the decoder.
-        source: image::ImageError,
-    },
-    /// The video could not be written.
-    #[error("cannot write {path}: {why}", path = .path.display())]
-    Disk {
-        /// The video's file.
-        path: PathBuf,
-        /// Error of the system or of the encoder.
-        why: String,
-    },
+    Export(#[from] ExportError),
 }
 
 /// Most bytes of another program's output that are reported.
 const MAX_OUTPUT_BYTES: usize = 4000;
 
 impl VideoError {
-    /// The error for a video that could not be written.
-    pub fn disk(path: &Path, why: &dyn std::error::Error) -> Self {
-        Self::Disk {
-            path: path.to_owned(),
-            why: why.to_string(),
-        }
+    /// The error for a video that could not be written, by the error of the system or of the encoder.
+    pub fn disk(path: &Path, source: impl Into<Source>) -> Self {
+        let (path, source) = (path.to_owned(), io::Error::other(source));
+        ExportError::Disk { path, source }.into()
     }
 
-    /// A frame could not be read.
+    /// The error for a frame that could not be read, by the error of the decoder.
     pub fn unreadable(path: &Path, source: image::ImageError) -> Self {
-        Self::Frame {
-            path: path.to_owned(),
-            source,
-        }
+        let (path, source) = (path.to_owned(), io::Error::other(source));
+        ExportError::Unreadable { path, source }.into()
     }
 }
 

@@ -59,7 +59,7 @@ pub fn make_with_ffmpeg(
     });
     let is_wanted = || go_on(fed.load(Ordering::Relaxed));
     let exit =
-        wait_for_exit(&mut ffmpeg, is_wanted).map_err(|error| VideoError::disk(path, &error))?;
+        wait_for_exit(&mut ffmpeg, is_wanted).map_err(|error| VideoError::disk(path, error))?;
     let status = exit.ok_or(VideoError::Stopped)?;
     let output = listener.join().unwrap_or_default();
     let took_all_frames = feeder.join().unwrap_or(Ok(false))?;

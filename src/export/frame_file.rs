@@ -46,7 +46,7 @@ pub fn prepare_in_order<F: Send, P: Send>(
 /// Returns the bytes of a frame's file.
 ///
 /// # Errors
-/// [`VideoError::Frame`], [`VideoError::Replaced`].
+/// [`VideoError::Export`], [`VideoError::Replaced`].
 pub fn frame_bytes(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
     let unreadable = |source| VideoError::unreadable(&path, source);
@@ -74,7 +74,7 @@ fn check_size(sequence: &Sequence, path: &Path, size: (u32, u32)) -> Result<(), 
 /// Returns a frame as PPM.
 ///
 /// # Errors
-/// [`VideoError::Frame`], [`VideoError::Replaced`].
+/// [`VideoError::Export`], [`VideoError::Replaced`].
 pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
     let path = sequence.path(frame);
     let image = Image::from(&read_frame(sequence, frame)?);
@@ -87,7 +87,7 @@ pub fn as_ppm(sequence: &Sequence, frame: u64) -> Result<Vec<u8>, VideoError> {
 /// Reads a frame of any format, and converts it to 8 bits.
 ///
 /// # Errors
-/// [`VideoError::Frame`], [`VideoError::Replaced`].
+/// [`VideoError::Export`], [`VideoError::Replaced`].
 pub fn read_frame(sequence: &Sequence, frame: u64) -> Result<RgbaImage, VideoError> {
     let path = sequence.path(frame);
     let image = decode(&path).map_err(|source| VideoError::unreadable(&path, source))?;

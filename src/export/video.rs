@@ -103,7 +103,7 @@ impl Video {
         mut go_on: impl FnMut(usize) -> bool,
     ) -> Result<(), VideoError> {
         let before = sequence.manifest()?;
-        let new_file = NewFile::beside(path).map_err(|error| VideoError::disk(path, &error))?;
+        let new_file = NewFile::beside(path).map_err(|error| VideoError::disk(path, error))?;
         match self.codec() {
             Some(codec) => make_with_ffmpeg(sequence, (new_file.lend(), path), codec, &mut go_on)?,
             None if self == Self::Gif => gif(sequence, (new_file.as_file(), path), &mut go_on)?,
@@ -125,7 +125,7 @@ impl Video {
         }
         // No hash would tell that it was damaged, as that of a frame does.
         let placed = new_file.place_durably();
-        placed.map_err(|error| VideoError::disk(path, &error))
+        placed.map_err(|error| VideoError::disk(path, error))
     }
 
     /// Describes in a sentence how a video will differ from the frames of a sequence, if it does.

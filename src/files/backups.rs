@@ -5,12 +5,12 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::reading::read_file;
-use super::writing::{NewFile, write_atomic};
+use super::writing::{NewFile, write_beside};
 
 /// Most backups of one file.
 const MAX_BACKUPS: u32 = 1000;
 
-/// Replaces a file, see [`write_atomic`]. If something else is there and `is_kept` holds for it, it is backed up first,
+/// Replaces a file, see [`super::write_atomic`]. If something else is there and `is_kept` holds for it, it is backed up first,
 /// see [`back_up`]; returns the path of the backup.
 ///
 /// # Errors
@@ -22,8 +22,10 @@ pub fn replace(
 ) -> io::Result<Option<PathBuf>> {
     let existing = read_file(path).ok();
     let is_lost = existing.is_some_and(|existing| existing != bytes && is_kept(&existing));
+    // Written first: if there is no room for it, there is no backup either.
+    let new_file = write_beside(path, bytes)?;
     let backup = is_lost.then(|| back_up(path)).transpose()?;
-    write_atomic(path, bytes)?;
+    new_file.place_durably()?;
     Ok(backup)
 }
 
@@ -42,6 +44,7 @@ fn back_up(path: &Path) -> io::Result<PathBuf> {
             Ok(existing) if existing == bytes => return Ok(backup),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let new_file = NewFile::beside(&backup)?;
+                // Before it holds anything.
                 let permissions = fs::metadata(path)?.permissions();
                 new_file.as_file().set_permissions(permissions)?;
                 new_file.as_file().write_all(&bytes)?;

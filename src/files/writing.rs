@@ -20,10 +20,18 @@ pub const UNFINISHED: &str = ".glint-unfinished-";
 /// # Errors
 /// Any error of the system; the file at `path` is then unchanged.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_beside(path, bytes)?.place_durably()
+}
+
+/// Writes `bytes` to a temporary file for `path`, and removes what killed processes have left in the folder.
+///
+/// # Errors
+/// Any error of the system.
+pub fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<NewFile> {
     let new_file = NewFile::beside(path)?;
     remove_leftovers(&new_file.folder);
     new_file.as_file().write_all(bytes)?;
-    new_file.place_durably()
+    Ok(new_file)
 }
 
 /// A temporary file beside the file that it will replace. No other process writes to it. Dropping it removes it;

@@ -1,4 +1,4 @@
-//! Rendering: the only way from a scene to a picture.
+//! Pictures that are traced as a whole.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ pub struct RenderCost {
     pub lanes: String,
 }
 
-/// Traces a whole picture on the current rayon pool: the only way from a scene to pixels. `None` if `control` was
+/// Traces a whole picture on the current rayon pool. `None` if `control` was
 /// stopped.
 pub fn render(
     scene: &Scene,

@@ -169,4 +169,16 @@ mod tests {
         assert_eq!(Ask::OpenScene.with_ending(path.clone()), path);
         assert_eq!(Ask::SaveScene.with_ending(path), with);
     }
+
+    #[test]
+    fn a_dialog_starts_in_the_folder_that_is_suggested() {
+        let (folder, name) = (Path::new("scenes"), OsStr::new("a.ron"));
+        let with_slash = folder.join("");
+        for ask in [Ask::OpenScene, Ask::ExportFolder] {
+            assert_eq!(start_of(&ask, &with_slash), (Some(folder), None));
+        }
+        let written = folder.join(name);
+        let found = start_of(&Ask::SaveScene, &written);
+        assert_eq!(found, (Some(folder), Some(name)));
+    }
 }

@@ -762,7 +762,7 @@ fn no_video_is_made_of_frames_that_another_export_has_put_there() {
         }
         true
     });
-    let is_told = matches!(&made, Err(VideoError::Frames(ExportError::Changed { path })) if *path == sequence.path(7));
+    let is_told = matches!(&made, Err(VideoError::Export(ExportError::Changed { path })) if *path == sequence.path(7));
     assert!(is_told, "{made:?}");
     assert!(!path.exists());
 }
@@ -1116,6 +1116,25 @@ fn the_window_and_the_command_line_write_the_same_scene_for_povray() {
     fs::remove_file(to).expect("there");
     done(glint(&["convert", "-o", to]).arg(other));
     assert_eq!(fs::read_to_string(to).expect("written"), by_window);
+}
+
+#[test]
+fn a_mesh_that_is_converted_over_a_scene_leaves_a_backup_of_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = folder.path().join("mine.ron");
+    let document = Document::of(flight());
+    document.save(&scene).expect("saved");
+    let before = fs::read(&scene).expect("readable");
+    let convert = || {
+        let mut convert = glint(&["convert", "scenes/knot.ply", "-o"]);
+        convert.arg(&scene);
+        done(&mut convert);
+        names(folder.path())
+    };
+    assert_eq!(convert(), ["mine.ron", "mine.ron.bak"]);
+    let backup = fs::read(folder.path().join("mine.ron.bak")).expect("readable");
+    assert!(backup == before && before != fs::read(&scene).expect("readable"));
+    assert_eq!(convert(), ["mine.ron", "mine.ron.bak"], "nothing is lost");
 }
 
 #[test]

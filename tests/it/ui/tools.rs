@@ -7,6 +7,7 @@ use glint::editor::{Item, Selection};
 use glint::scene::{Disc, Projection, Scene, Shape, Sphere, Triangle};
 
 use crate::harness::{CTRL, EditorHarness, radius};
+use crate::timeline::animation;
 
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const NONE: Modifiers = Modifiers::NONE;
@@ -107,6 +108,18 @@ fn a_click_selects_what_is_seen_there() {
     assert_eq!(*harness.editor().selection(), Selection::Camera);
     assert_eq!(harness.scene(), &Scene::demo(), "to look changes nothing");
     assert!(!harness.editor().is_dirty());
+}
+
+#[test]
+fn a_click_in_what_plays_stops_it_and_selects() {
+    let mut harness = animation(&[(0.0, 0.0), (20.0, 0.0)]);
+    let ball = place(&harness, center(harness.scene(), 0));
+    harness.window.key_press(Key::G);
+    (0..20).for_each(|_| harness.window.step());
+    assert!(harness.editor().timeline().is_playing);
+    click(&mut harness, ball, NONE);
+    assert!(!harness.editor().timeline().is_playing);
+    assert_eq!(harness.selected(), ["Sphere 1"]);
 }
 
 #[test]

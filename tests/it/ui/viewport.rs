@@ -280,6 +280,27 @@ fn a_turn_of_the_wheel_is_one_step_and_spares_the_still_picture() {
 }
 
 #[test]
+fn two_fingers_that_move_apart_zoom() {
+    let mut harness = EditorHarness::new();
+    let start = harness.scene().camera.clone();
+    let at = harness.view().center();
+    hover(&mut harness, at);
+    let pinch = |harness: &mut EditorHarness| {
+        harness.window.event(Event::Zoom(2.0));
+        (0..40).for_each(|_| harness.window.step());
+        harness.settle();
+    };
+    pinch(&mut harness);
+    let moved = harness.scene().camera.position - start.position;
+    assert!(moved.dot(start.look_at) > 0.0, "{moved}");
+    harness.press(CTRL, Key::Z);
+    assert_eq!(harness.scene().camera, start);
+    harness.press(Modifiers::NONE, Key::H);
+    pinch(&mut harness);
+    harness.window.get_by_label("Leave High-res picture 1:1");
+}
+
+#[test]
 fn the_still_picture_is_enlarged_moved_and_traced_in_part() {
     let mut harness = EditorHarness::new();
     harness.press(Modifiers::NONE, Key::H);
