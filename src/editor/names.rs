@@ -109,11 +109,9 @@ pub fn shape_copy_step(scene: &Scene, shape: &Shape) -> DVec3 {
     if let Some((low, high)) = shape.bounds() {
         return DVec3::new((high - low).abs().max_element(), 0.0, 0.0);
     }
-    let normal = shape
-        .endless_plane()
-        .and_then(|(_, normal)| normal.try_normalize());
+    let plane = shape.endless_plane();
     let extent = scene
         .bounds()
         .map_or(1.0, |(low, high)| (high - low).length());
-    normal.map_or(DVec3::ZERO, |normal| normal * (extent / 20.0))
+    plane.map_or(DVec3::ZERO, |plane| plane.normal * (extent / 20.0))
 }

@@ -107,7 +107,8 @@ fn checked_lights(scene: &Scene) -> impl Iterator<Item = &Light> {
 
 /// The visible endless planes.
 pub fn visible_planes(scene: &Scene) -> impl Iterator<Item = PlanePiece> {
-    visible_pieces(scene).filter(|piece| piece.outline == Outline::Endless)
+    let visible = scene.visible_objects();
+    visible.filter_map(|object| object.shape.endless_plane())
 }
 
 /// The visible flat objects.

@@ -25,9 +25,6 @@ const ON_CURVED: f64 = 1e-11;
 /// Distance from a curved surface up to which a light may be on it, in radii.
 const NEAR_CURVED: f64 = 1e-5;
 
-/// Objects by their indices in the scene's list.
-pub type ObjectIndices = Vec<usize>;
-
 /// The contacts in a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts {
@@ -37,7 +34,7 @@ pub struct Contacts {
     pub shared: Vec<Coincidence>,
     /// The flat objects whose planes contain the eye, which sees at most their edges, or the whole window of
     /// parallel rays, which start behind them.
-    pub edge_on: ObjectIndices,
+    pub edge_on: Vec<usize>,
     /// The curved object on whose surface the eye is.
     pub eye_object: Option<usize>,
     /// The contacts of the lights.
@@ -54,12 +51,12 @@ pub struct Contacts {
 #[derive(Clone, Debug, Default)]
 pub struct LightContacts {
     /// For each light of the scene, the flat objects whose planes contain it: they cast no shadow from it.
-    pub held_by: Vec<ObjectIndices>,
+    pub held_by: Vec<Vec<usize>>,
     /// For each light, the first ball whose surface contains it: on one side that ball casts a shadow, which is
     /// decided exactly. For further balls, rounding decides.
     pub on_balls: Vec<Option<usize>>,
-    /// The lights of the scene that may be on the surface of an object other than a mesh.
-    pub touching: ObjectIndices,
+    /// For each light, whether it may be on the surface of an object other than a mesh.
+    pub touching: Vec<bool>,
 }
 
 impl LightContacts {
@@ -69,10 +66,11 @@ impl LightContacts {
             return Self::default();
         }
         let held_by = planes_through(objects, lights);
-        let touches =
-            |light: &usize| !held_by[*light].is_empty() || is_on_any(objects, lights[*light]);
+        let touches = |(light, held_by): (&DVec3, &Vec<usize>)| {
+            !held_by.is_empty() || is_on_any(objects, *light)
+        };
         Self {
-            touching: (0..lights.len()).filter(touches).collect(),
+            touching: lights.iter().zip(&held_by).map(touches).collect(),
             on_balls: balls_at(objects, lights),
             held_by,
         }
@@ -210,8 +208,8 @@ fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
 }
 
 /// Returns for each point the visible flat objects whose planes contain it.
-fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<ObjectIndices> {
-    let mut through = vec![ObjectIndices::new(); points.len()];
+fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Vec<usize>> {
+    let mut through = vec![Vec::new(); points.len()];
     for (index, object) in objects.visible() {
         let Some(piece) = object.shape.plane_piece() else {
             continue;

@@ -17,6 +17,9 @@ use crate::simd::{Real, Vec3};
 /// Height above a face, as a share of the coordinates, that single precision may give a point on the face.
 const MAX_FACE_HEIGHT: f64 = 8.0 * f32::UNIT_ROUNDOFF as f64;
 
+/// Greatest number of pairs of a mesh and a light that are examined: with more, that takes seconds and gigabytes.
+const MAX_PAIRS: usize = 200_000;
+
 /// A point from which rays start, or to which they go.
 #[derive(Clone, Copy)]
 struct RayEnd {
@@ -27,7 +30,7 @@ struct RayEnd {
 }
 
 impl<R: Real> Plan<R> {
-    /// Finds the faces that contain the eye or a light.
+    /// Finds the faces that contain the eye or a light; the latter only if meshes and lights are not too many.
     pub fn find_held_faces(&mut self, scene: &Scene, request: &RenderRequest) {
         let Some(geometry) = &self.geometry else {
             return;
@@ -51,6 +54,9 @@ impl<R: Real> Plan<R> {
             point: scene.camera.position,
             direction: unit(scene.camera.look_at).filter(|_| is_parallel),
         });
+        if geometry.meshes.len() * self.lights.len() > MAX_PAIRS {
+            return;
+        }
         for light in &mut self.lights {
             light.culled_faces = containing(RayEnd {
                 point: light.world_position,

@@ -103,7 +103,7 @@ pub fn pack_lights<R: Real>(
         })
         .map(|(index, light)| {
             let position: Vec3<R> = Vec3::from_dvec3(light.position - centre);
-            let may_be_on_surface = contacts.touching.contains(&index);
+            let may_be_on_surface = contacts.touching.get(index) == Some(&true);
             let flat = contacts.held_by.get(index).into_iter().flatten();
             let ball = contacts.on_balls.get(index).copied().flatten();
             // If it is in the tree, rays test it like everything else.

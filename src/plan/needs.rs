@@ -143,11 +143,11 @@ fn shadows(scene: &Scene, plan: &Plan<f64>) -> Need {
     let rule = "shadows";
     let (used, all) = (plan.lights.len(), scene.lights.len());
     let is_anything_seen = scene.visible_objects().next().is_some();
-    if all == 0 || !is_anything_seen {
-        let why = if all == 0 {
-            "there are no lights"
-        } else {
-            "nothing is visible"
+    if used == 0 || !is_anything_seen {
+        let why = match all {
+            0 => "there are no lights",
+            _ if !is_anything_seen => "nothing is visible",
+            _ => "every light is hidden, has no intensity or is behind a plane",
         };
         return need(rule, "no shadow rays", why, "all of them");
     }
@@ -248,6 +248,12 @@ fn hidden(scene: &Scene) -> Need {
 fn faces(plan: &Plan<f64>) -> Need {
     let rule = "faces";
     let all = plan.primitives.triangles.len();
+    let geometry = plan.geometry.as_ref();
+    let in_tree = geometry.map_or(0, |geometry| geometry.primitives.triangles.len());
+    if all == 0 && in_tree > 0 {
+        let what = format!("both sides of {}", counted(in_tree, "triangle"));
+        return need(rule, what, "rays find them in the tree", "nothing");
+    }
     if all == 0 {
         let why = "there are none outside meshes, whose trees skip their far sides";
         return need(rule, "no single triangles", why, "nothing");

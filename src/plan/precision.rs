@@ -112,7 +112,8 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     if is_out_of_sight {
         return true;
     }
-    let Some((low, high)) = scene.bounds() else {
+    // Far lights are no reason: their directions are as exact as any.
+    let Some((low, high)) = scene.surroundings() else {
         return false;
     };
     let centre = (low + high) * 0.5;

@@ -1,6 +1,5 @@
 //! Reading and writing scene files in RON. Both either succeed completely or change nothing.
 
-use std::fmt;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,6 +10,7 @@ use ron::ser::PrettyConfig;
 use super::check::{Problem, check};
 use super::locate::{PathStep, claimed_version, has_inner_comments, header, locate, locate_items};
 use super::parse_errors::sentence;
+use super::refusal::{Refusal, offset_of};
 use super::whole::{MAX_BYTES, Scene, VERSION};
 use crate::files::{Stamp, absolute, read_at_most, replace, time_of};
 use crate::mesh::is_mesh_file;
@@ -21,9 +21,6 @@ pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
 /// Largest nesting depth of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
-/// Largest number of characters of a line that an error shows: files of a single line stay readable.
-const MAX_EXCERPT: usize = 64;
-
 /// A scene and the comment header of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
@@ -67,43 +64,6 @@ pub enum SceneError {
         /// The error of the operating system.
         source: io::Error,
     },
-}
-
-/// Why a text was refused: position, message and an excerpt of the line.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
-    /// The file name, or a name for the text.
-    pub name: String,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// What is wrong and what was expected, as a sentence without its full stop.
-    pub sentence: String,
-    /// The line around the column, at most [`MAX_EXCERPT`] characters.
-    excerpt: String,
-    /// Characters of the excerpt before the caret.
-    indent: usize,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self {
-            name,
-            line,
-            column,
-            sentence,
-            excerpt,
-            indent,
-        } = self;
-        let number = line.to_string();
-        let margin = " ".repeat(number.len());
-        let caret = format!("{:indent$}^", "");
-        write!(
-            f,
-            "{name}:{line}:{column}: {sentence}\n {number} | {excerpt}\n {margin} | {caret}"
-        )
-    }
 }
 
 impl Scene {
@@ -169,7 +129,7 @@ impl Document {
     }
 
     fn parse(name: &str, text: &str) -> Result<Self, SceneError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = without_mark(text);
         let refuse_problem =
             |Problem { path, sentence }| refuse(name, text, locate(text, &path), sentence);
         if let Some(version) = claimed_version(text).filter(|&version| version > VERSION) {
@@ -194,6 +154,8 @@ impl Document {
                 _ if is_empty => text.trim_end().len(),
                 // The parser's position is after the sign of a number that must not have one.
                 ron::Error::IntegerOutOfBounds if text[..offset].ends_with('-') => offset - 1,
+                // … and after the quotation mark of a text that is refused.
+                ron::Error::Message(_) if text[..offset].ends_with('"') => offset - 1,
                 _ => offset,
             };
             let sentence = sentence(&error.code, text.split_at(at), MAX_DEPTH);
@@ -288,7 +250,7 @@ impl Document {
 
     /// Returns whether `text`, a scene file, has comments that this document lacks.
     fn loses_comments_of(&self, text: &str) -> bool {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = without_mark(text);
         let header = header(text);
         let plain = |text: &str| text.replace('\r', "").trim().to_owned();
         let own_header = plain(header);
@@ -304,6 +266,11 @@ fn write(
 ) -> Result<Option<PathBuf>, SceneError> {
     Document::check_length(path, text)?;
     replace(path, text.as_bytes(), is_kept).map_err(|source| disk_error("write", path, source))
+}
+
+/// Returns a text without the byte-order mark that some editors put in front.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 /// Returns the absolute path of the folder of a file.
@@ -367,53 +334,18 @@ pub fn messages_about_objects(path: &Path, sentences: Vec<(usize, String)>) -> V
     // A pipe cannot be read a second time.
     let text = path.is_file().then(|| read_text(path).ok());
     let text = text.flatten().unwrap_or_default();
-    let offsets = locate_items(&text, &[PathStep::Field("objects")]);
+    let text = without_mark(&text);
+    let offsets = locate_items(text, &[PathStep::Field("objects")]);
     let sentences = sentences.into_iter();
     let messages = sentences.map(|(index, sentence)| match offsets.get(index) {
-        Some(&at) => refuse(&name, &text, at, sentence).to_string(),
+        Some(&at) => refuse(&name, text, at, sentence).to_string(),
         None => format!("{name}: {sentence}"),
     });
     messages.collect()
 }
 
-/// Returns the byte offset of a 1-based line and column in characters, moved past white space: the parser reports
-/// where it stopped, but readers look for the token there.
-fn offset_of(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text
-        .split_inclusive('\n')
-        .take(line.saturating_sub(1))
-        .map(str::len)
-        .sum();
-    let within = text[start..].char_indices().nth(column.saturating_sub(1));
-    let at = within.map_or(text.len(), |(index, _)| start + index);
-    let space = text[at..].len() - text[at..].trim_start().len();
-    if at + space == text.len() {
-        at
-    } else {
-        at + space
-    }
-}
-
 fn refuse(name: &str, text: &str, at: usize, sentence: String) -> SceneError {
-    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-    let before: Vec<char> = text[start..at].chars().collect();
-    let after = text[at..].chars().take_while(|&c| c != '\n' && c != '\r');
-    let indent = before.len().min(MAX_EXCERPT / 2);
-    let shown = before[before.len() - indent..]
-        .iter()
-        .copied()
-        .chain(after)
-        .take(MAX_EXCERPT);
-    SceneError::Refused(Refusal {
-        name: name.to_owned(),
-        line: text[..at].matches('\n').count() + 1,
-        column: before.len() + 1,
-        sentence,
-        excerpt: shown
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect(),
-        indent,
-    })
+    SceneError::Refused(Refusal::at(name, text, at, sentence))
 }
 
 #[cfg(test)]

@@ -180,14 +180,14 @@ fn is_on(shape: &Shape, point: DVec3) -> bool {
 }
 
 fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {
-    let Some((at, normal)) = shape.endless_plane() else {
+    let Some(plane) = shape.endless_plane() else {
         return false;
     };
-    let normal = unit(normal).unwrap_or_default();
     match camera.projection {
-        Projection::Perspective => (camera.position - at).dot(normal).abs() < EDGE_ON * extent,
+        Projection::Perspective => plane.height(camera.position).abs() < EDGE_ON * extent,
         Projection::Orthographic => {
-            unit(camera.look_at).unwrap_or_default().dot(normal).abs() < EDGE_ON
+            let direction = unit(camera.look_at).unwrap_or_default();
+            direction.dot(plane.normal).abs() < EDGE_ON
         }
     }
 }

@@ -54,10 +54,9 @@ pub enum Overlap {
 
 /// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
-    let planes = objects.visible().filter_map(|(index, object)| {
-        let plane = object.shape.plane_piece()?;
-        (plane.outline == Outline::Endless).then_some((index, plane))
-    });
+    let planes = objects
+        .visible()
+        .filter_map(|(index, object)| Some((index, object.shape.endless_plane()?)));
     let planes: Vec<(usize, PlanePiece)> = planes.collect();
     let bounded = objects
         .visible()

@@ -62,6 +62,8 @@ mod check;
 
 mod parse_errors;
 
+mod refusal;
+
 mod file;
 
 mod examples;

@@ -1040,7 +1040,10 @@ fn quitting_asks_while_frames_are_exported_and_the_next_window_resumes_them() {
     harness.assert_says("202 frames in");
     assert!(harness.window.query_by_label("Not finished").is_none());
     drop(harness);
-    let sequence = sequence(sized_flight(512, 512), None, Format::Ppm, &folder);
+    let pattern = Pattern::parse("rayTrace%04d").expect("a pattern");
+    let flight = Arc::new(sized_flight(512, 512));
+    let sequence = Sequence::new(flight, None, pattern, Format::Png, folder);
+    let sequence = sequence.expect("these frames exist");
     assert_eq!(sequence.missing().expect("readable").count(), 0);
     // It has ended, so it is not reported again.
     let harness = EditorHarness::kept_in(data.path(), FLIGHT.into());

@@ -13,7 +13,7 @@ use crate::scene::target::Owners;
 use crate::scene::whole::Scene;
 
 /// Smallest time between two keys, in seconds: slopes between them are still finite.
-const MIN_GAP: f64 = 0.999_999e-6;
+const MIN_GAP: f64 = 0.999_9e-6;
 
 pub fn check_animation(at: &At, scene: &Scene) -> Check {
     let animation: &Animation = &scene.animation;

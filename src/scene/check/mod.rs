@@ -134,6 +134,9 @@ fn check_objects(at: &At, scene: &Scene, valid: Option<&Scene>) -> Check {
 
 fn check_object(at: &At, scene: &Scene, object: &Object) -> Check {
     check_name(&at.field("name"), &object.name)?;
+    if !object.group.is_empty() {
+        check_name(&at.field("group"), &object.group)?;
+    }
     check_pack_exists(&at.field("color_pack"), scene, &object.color_pack)?;
     check_shape(&at.field("shape"), &object.shape)
 }

@@ -142,13 +142,7 @@ impl<'a> At<'a> {
     }
 
     fn bounded(&self, value: DVec3, words: &str) -> Check {
-        self.finite(&value.to_array())?;
-        let largest = value.abs().max_element();
-        if largest <= MAX_COORDINATE {
-            return Ok(());
-        }
-        let found = format_number(largest);
-        self.refuse(format!("{} {words}, found {found}", self.name()))
+        self.each_component(value, |part| part.abs() <= MAX_COORDINATE, words)
     }
 
     /// Checks scale factors: no component may be close to zero.

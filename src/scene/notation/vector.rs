@@ -61,14 +61,6 @@ impl<'de> Visitor<'de> for NumberOrPoint {
         Ok(Value::Number(number as f64))
     }
 
-    fn visit_i128<E: Error>(self, number: i128) -> Result<Value, E> {
-        Ok(Value::Number(number as f64))
-    }
-
-    fn visit_u128<E: Error>(self, number: u128) -> Result<Value, E> {
-        Ok(Value::Number(number as f64))
-    }
-
     fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Value, A::Error> {
         let mut point = [0.0; 3];
         for (index, part) in point.iter_mut().enumerate() {

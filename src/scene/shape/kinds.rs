@@ -196,10 +196,10 @@ impl Shape {
         placed
     }
 
-    /// Returns a point and the normal of an infinite plane; `None` for all other shapes.
-    pub fn endless_plane(&self) -> Option<(DVec3, DVec3)> {
-        let flat = self.plane_piece()?;
-        (flat.outline == Outline::Endless).then_some((flat.point, flat.normal))
+    /// Returns the surface of an infinite plane; `None` for all other shapes.
+    pub fn endless_plane(&self) -> Option<PlanePiece> {
+        let piece = self.plane_piece();
+        piece.filter(|piece| piece.outline == Outline::Endless)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::scene::direction::unit;
+
 /// A piece of a plane, in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanePiece {
@@ -45,7 +47,7 @@ impl PlanePiece {
         let [a, b, c] = corners;
         Some(Self {
             point: a,
-            normal: (b - a).cross(c - a).try_normalize()?,
+            normal: unit((b - a).cross(c - a))?,
             outline: Outline::Triangle(corners),
         })
     }

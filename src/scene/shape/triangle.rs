@@ -4,8 +4,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::describe::{Describe, Property, PropertyValue};
-use super::plane_piece::{Outline, PlanePiece};
-use crate::scene::direction::unit;
+use super::plane_piece::PlanePiece;
 use crate::scene::notation;
 
 /// Smallest valid ratio of a triangle's height to its longest side; below it, rounding decides what is hit.
@@ -93,10 +92,6 @@ impl Describe for Triangle {
     }
 
     fn plane_piece(&self) -> Option<PlanePiece> {
-        Some(PlanePiece {
-            point: self.a,
-            normal: unit((self.b - self.a).cross(self.c - self.a))?,
-            outline: Outline::Triangle(self.corners()),
-        })
+        PlanePiece::between(self.corners())
     }
 }
