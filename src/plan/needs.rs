@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use serde::Serialize;
 
-use super::geometry::{MAX_LIST, MAX_LISTED_TRIANGLES, PlanCache, SMALLEST_TREE};
+use super::geometry::{MAX_LIST, MAX_LISTED_OF_KIND, PlanCache, SMALLEST_TREE};
 use super::materials::Material;
 use super::pack::Plan;
 use super::precision::{allows_finer_features, is_filtered, is_too_large_for_both, needs_double};
@@ -303,7 +303,7 @@ fn accelerator(scene: &Scene, request: &RenderRequest, plan: &Plan<f64>) -> Need
     if plan.geometry.is_some() {
         let why = asked.unwrap_or_else(|| {
             format!(
-                "meshes, more than {MAX_LIST} objects or {MAX_LISTED_TRIANGLES} triangles, or fewer that fill a volume or share few pixels, are too many to list for every tile"
+                "meshes, more than {MAX_LIST} objects or {MAX_LISTED_OF_KIND} spheres or triangles, or fewer that fill a volume or share few pixels, are too many to list for every tile"
             )
         });
         need(

@@ -215,10 +215,15 @@ impl<'a> Cursor<'a> {
 
     /// Moves into a struct, list, tuple or map, behind its opening bracket. Returns whether there is one.
     fn open(&mut self) -> bool {
-        self.identifier();
+        let name = self.identifier();
         self.skip_space();
         let is_open = matches!(self.peek(), Some('(' | '[' | '{'));
         self.at += usize::from(is_open);
+        if is_open && name == "Some" {
+            // An option that is written out stands for what is in it.
+            self.skip_space();
+            return self.open();
+        }
         is_open
     }
 

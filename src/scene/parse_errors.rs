@@ -27,7 +27,7 @@ pub fn sentence(error: &Error, (before, after): (&str, &str), max_depth: usize) 
             format!("expected the name of a field, found {name}{hint}")
         }
         // The parser has read the digits before the decimal point as an integer.
-        Error::ExpectedComma
+        Error::ExpectedComma | Error::ExpectedStructLikeEnd
             if before.ends_with(|c: char| c.is_ascii_digit()) && after.starts_with('.') =>
         {
             "expected a whole number".to_owned()

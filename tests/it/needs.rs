@@ -5,7 +5,7 @@ use glam::DVec3;
 use glint::image::Image;
 use glint::plan::{Model, Need, Plan, PlanCache, RenderRequest, needs};
 use glint::scene::{
-    Accelerator, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
+    Accelerator, Disc, HighlightMethod, Object, Sampling, Scene, Shape, Sphere, Triangle,
 };
 use glint::trace::Rays;
 
@@ -154,27 +154,34 @@ fn without_mirrors_nothing_is_reflected_and_one_brings_it_back() {
 
 #[test]
 fn the_tree_begins_where_a_list_is_too_long() {
-    let crowd = |balls: usize, triangles: usize, sampling: Sampling, side: u32| {
+    let ball = |center: DVec3| {
+        Shape::Sphere(Sphere {
+            center,
+            radius: 0.4,
+        })
+    };
+    let triangle = |a: DVec3| {
+        Shape::Triangle(Triangle {
+            a,
+            b: a + DVec3::X,
+            c: a + DVec3::Y,
+        })
+    };
+    let disc = |center: DVec3| {
+        Shape::Disc(Disc {
+            center,
+            normal: DVec3::Z,
+            radius: 0.4,
+        })
+    };
+    let crowd = |kind: &dyn Fn(DVec3) -> Shape, count: usize, sampling: Sampling, side: u32| {
         let mut scene = Scene::empty();
         let pack = scene.color_packs.keys().next().expect("a pack").clone();
-        for n in 0..balls + triangles {
-            let center = DVec3::new(n as f64, 0.0, -50.0);
-            let shape = if n < balls {
-                Shape::Sphere(Sphere {
-                    center,
-                    radius: 0.4,
-                })
-            } else {
-                Shape::Triangle(Triangle {
-                    a: center,
-                    b: center + DVec3::X,
-                    c: center + DVec3::Y,
-                })
-            };
+        for n in 0..count {
             scene.objects.push(Object {
                 name: format!("Object {n}"),
                 color_pack: pack.clone(),
-                shape,
+                shape: kind(DVec3::new(n as f64, 0.0, -50.0)),
                 visible: true,
                 group: String::new(),
             });
@@ -190,13 +197,14 @@ fn the_tree_begins_where_a_list_is_too_long() {
     let (plain, smooth) = (Sampling::Centres, Sampling::ADAPTIVE);
     // Independent of the size of the picture.
     for sampling in [plain, smooth] {
-        assert!(!crowd(384, 0, sampling, 2000) && crowd(385, 0, sampling, 2000));
-        assert!(!crowd(0, 128, sampling, 2000) && crowd(0, 129, sampling, 2000));
-        assert!(!crowd(32, 0, sampling, 64) && crowd(33, 0, sampling, 64));
+        assert!(!crowd(&disc, 384, sampling, 2000) && crowd(&disc, 385, sampling, 2000));
+        assert!(!crowd(&ball, 128, sampling, 2000) && crowd(&ball, 129, sampling, 2000));
+        assert!(!crowd(&triangle, 128, sampling, 2000) && crowd(&triangle, 129, sampling, 2000));
+        assert!(!crowd(&ball, 32, sampling, 64) && crowd(&ball, 33, sampling, 64));
     }
     // With 200 objects, it depends on the size: 2,000 pixels per object, or 500 with clean edges.
-    assert!(crowd(200, 0, plain, 632) && !crowd(200, 0, plain, 633));
-    assert!(crowd(200, 0, smooth, 316) && !crowd(200, 0, smooth, 317));
+    assert!(crowd(&disc, 200, plain, 632) && !crowd(&disc, 200, plain, 633));
+    assert!(crowd(&disc, 200, smooth, 316) && !crowd(&disc, 200, smooth, 317));
     // So far the objects were in a row; this crowd fills a volume.
     let space = |side: f64| {
         let mut scene = Scene::empty();
