@@ -151,8 +151,8 @@ fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
 }
 
 /// Moves each box a little in its own direction. Otherwise, all boxes of a regular row would choose the neighbour on the
-/// same side, and boxes in one place the same neighbour, so that only one pair at a time would be joined: a straight
-/// road of 100,000 faces took 16 s. The moved boxes only determine the grouping.
+/// same side, and boxes in one place the same neighbour, so that only one pair at a time would be joined: 40,000
+/// triangles in a row took 27 s instead of 0.4 s. The moved boxes only determine the grouping.
 fn nudge(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
     let least = boxes.iter().map(reach).fold(0.0, f32::max) * MIN_NUDGE;
