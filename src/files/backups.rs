@@ -10,8 +10,8 @@ use super::writing::{NewFile, write_beside};
 /// Most backups of one file.
 const MAX_BACKUPS: u32 = 1000;
 
-/// Replaces a file, see [`super::write_atomic`]. If something else is there and `is_kept` holds for it, it is backed up first,
-/// see [`back_up`]; returns the path of the backup.
+/// Replaces a file, see [`super::write_atomic`]. If something else is there and `is_kept` holds for it, it is kept as
+/// `NAME.bak`, or as `NAME.bak2` and so on if that is there; returns the path of the backup.
 ///
 /// # Errors
 /// Any error of the system; the file at `path` is then unchanged.
