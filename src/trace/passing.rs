@@ -2,30 +2,33 @@
 
 use super::bundle::Bundle;
 use super::thin_margin::ThinMargin;
+use crate::plan::Node;
 use crate::primitive::BoundingBox;
 use crate::simd::{Real, SimdFloat};
 
-/// Returns which rays by themselves pass a box closely enough for what is in it to count, whose thickness is given,
-/// whatever other rays are in the packet.
+/// Returns which rays by themselves pass the box at `index` of a node closely enough for something thin in it to
+/// count, whatever other rays are in the packet.
 #[inline(always)]
 pub fn lanes_passing_box<L: SimdFloat>(
     bundle: &Bundle<L>,
-    (bounds, thickness): (&BoundingBox<L::Real>, L::Real),
+    (node, index): (&Node, usize),
     reach: L,
     margin: &ThinMargin<L>,
 ) -> L::Mask {
-    let width = own_width_around(bundle, bounds, margin);
+    let bounds = node.bounds(index);
+    let width = own_width_around(bundle, &bounds, margin);
     let mut near = reach.like(L::Real::ZERO);
     let mut far = reach + width * (margin.max_thickness + reach.like(L::Real::ONE));
     let inverse = bundle.inverse.to_array();
-    for ([low, high, below, above], inverse) in along_axes(bundle, bounds).into_iter().zip(inverse)
+    for ([low, high, below, above], inverse) in along_axes(bundle, &bounds).into_iter().zip(inverse)
     {
         let (low, high) = (low - width, high + width);
         let (low, high) = ((low - above) * inverse, (high - below) * inverse);
         near = near.max(low.min(high));
         far = far.min(low.max(high));
     }
-    let is_thin = reach.like(thickness).less(width * margin.max_thickness);
+    let thickness = reach.like(L::Real::from_single(node.thickness[index]));
+    let is_thin = thickness.less(width * margin.max_thickness);
     is_thin & near.at_most(far) & bundle.active
 }
 

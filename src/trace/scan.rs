@@ -59,12 +59,20 @@ pub trait Test<L: SimdFloat> {
         None
     }
 
-    /// Sets for which rays the tests that follow count, because they pass a box closely; `None` for all.
-    fn count_only(&mut self, _passing: Option<L::Mask>) {}
-
     /// Sets the rays, bit by bit, that are excluded from the tests that follow. Returns those excluded so far.
     fn exclude_lanes(&mut self, _merged_lanes: u64) -> u64 {
         0
+    }
+
+    /// Tests the primitive of this number in one of its boxes; it counts for the rays that pass that closely.
+    fn test_slice<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        (paths, _passing): (&Paths<L>, impl FnOnce() -> L::Mask),
+        number: usize,
+    ) {
+        self.test(primitive, prepared, paths, number);
     }
 
     /// Tests the primitive of this number.
@@ -320,7 +328,9 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
 
     #[inline(always)]
     fn visit_member(&mut self, member: u32, _width: L::Real, _stack: &mut Stack<L::Real>) {
-        self.test_face(member as usize);
+        let (index, prepared) = (member as usize, &self.prepared.triangles);
+        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
+        self.test.test(triangle, prepared, self.paths, number);
     }
 
     #[inline(always)]
@@ -329,10 +339,11 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     }
 
     #[inline(always)]
-    fn visit_slice(&mut self, member: u32, passing: L::Mask) {
-        self.test.count_only(Some(passing));
-        self.test_face(member as usize);
-        self.test.count_only(None);
+    fn visit_slice(&mut self, member: u32, passing: impl FnOnce() -> L::Mask) {
+        let (index, prepared) = (member as usize, &self.prepared.triangles);
+        let (triangle, number) = (&self.mesh.triangles[index], self.first + index);
+        let paths = (self.paths, passing);
+        self.test.test_slice(triangle, prepared, paths, number);
     }
 
     #[inline(always)]
@@ -355,15 +366,6 @@ impl<L: SimdFloat, T: Test<L>> TreeVisitor<L> for FaceVisitor<'_, L, T> {
     #[inline(always)]
     fn exclude_lanes(&mut self, merged_lanes: u64) {
         self.test.exclude_lanes(merged_lanes);
-    }
-}
-
-impl<L: SimdFloat, T: Test<L>> FaceVisitor<'_, L, T> {
-    #[inline(always)]
-    fn test_face(&mut self, index: usize) {
-        let (triangle, prepared) = (&self.mesh.triangles[index], &self.prepared.triangles);
-        self.test
-            .test(triangle, prepared, self.paths, self.first + index);
     }
 }
 

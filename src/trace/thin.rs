@@ -149,8 +149,6 @@ struct ThinTest<'a, L: SimdFloat> {
     /// the primitive still counts.
     merged_lanes: u64,
     unmerged_lanes: L::Mask,
-    /// The rays that pass the box closely in which the primitive is tested.
-    passing: L::Mask,
 }
 
 /// How rays pass a ball.
@@ -178,7 +176,6 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
             cone: query.cone,
             merged_lanes: 0,
             unmerged_lanes: all,
-            passing: all,
         }
     }
 
@@ -209,8 +206,59 @@ impl<'a, L: SimdFloat> ThinTest<'a, L> {
         let width = cone.width_at(to).max(cone.width_at(from.max(zero)));
         let is_before = from.less(*reach + primitive.margin(width));
         let thin = size.less(width * to.like_f64(THIN_WIDTH)) & zero.less(to) & is_before;
-        let lanes = self.face_lanes & self.unmerged_lanes & self.passing;
-        (thin & lanes, width)
+        (thin & self.face_lanes & self.unmerged_lanes, width)
+    }
+
+    /// Returns how many pixels away from the rays a primitive is; infinity where it does not count.
+    #[inline(always)]
+    fn pixels_to<P: Primitive<L::Real>>(
+        &self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        paths: &Paths<L>,
+        number: usize,
+    ) -> L {
+        let direction = paths.rays.direction;
+        let infinity = direction.x.like(L::Real::INFINITY);
+        let is_to_light = self.query.is_to_light;
+        let far = primitive.is_far(if is_to_light { -direction } else { direction });
+        let active = match far {
+            Some(far) => self.query.active & !far,
+            None => self.query.active,
+        };
+        if !active.any() {
+            return infinity;
+        }
+        let approach = primitive.approach(
+            &paths.rays,
+            prepared,
+            // Beyond a pixel, the exact distance does not matter.
+            #[inline(always)]
+            |rough| {
+                let (counts, width) = self.counts(primitive, rough);
+                (counts & active & rough.distance.less(width)).any()
+            },
+        );
+        let Some(approach) = approach else {
+            return infinity;
+        };
+        let (counts, width) = self.counts(primitive, &approach);
+        let mut counts = counts & active;
+        // A curved surface surrounds the rays that start on it.
+        if P::IS_CURVED {
+            counts = counts & !paths.ignored.starts_on(number);
+        }
+        distance_in_pixels(counts, approach.distance, width)
+    }
+
+    /// Notes how many pixels away from the rays something is, where these pass a box closely. That is asked last,
+    /// since it takes long.
+    #[inline(always)]
+    fn note(&mut self, near: L, passing: impl FnOnce() -> L::Mask) {
+        if near.less(self.best).any() {
+            let near = L::select(passing(), near, near.like(L::Real::INFINITY));
+            self.best = self.best.min(near);
+        }
     }
 }
 
@@ -288,11 +336,7 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         let is_in_reach = zero.less(ball.along) & ball.along.less(self.query.reach + width);
         let lanes = active & self.face_lanes & self.unmerged_lanes;
         let counts = is_merged & is_thin & is_in_reach & lanes;
-        let near = ball.in_pixels(counts, ball.off - ball.radius);
-        if near.less(self.best).any() {
-            let near = L::select(passing(), near, width.like(L::Real::INFINITY));
-            self.best = self.best.min(near);
-        }
+        self.note(ball.in_pixels(counts, ball.off - ball.radius), passing);
         (is_merged | !active).bits()
     }
 
@@ -309,12 +353,6 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
             narrowing: (-cone.spread).max(zero),
             min_width: in_meshes.width,
         })
-    }
-
-    #[inline(always)]
-    fn count_only(&mut self, passing: Option<L::Mask>) {
-        let all = self.query.active | !self.query.active;
-        self.passing = passing.unwrap_or(all);
     }
 
     #[inline(always)]
@@ -349,35 +387,18 @@ impl<L: SimdFloat> Test<L> for ThinTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let direction = paths.rays.direction;
-        let is_to_light = self.query.is_to_light;
-        let far = primitive.is_far(if is_to_light { -direction } else { direction });
-        let active = match far {
-            Some(far) => self.query.active & !far,
-            None => self.query.active,
-        };
-        if !active.any() {
-            return;
-        }
-        let approach = primitive.approach(
-            &paths.rays,
-            prepared,
-            // Beyond a pixel, the exact distance does not matter.
-            #[inline(always)]
-            |rough| {
-                let (counts, width) = self.counts(primitive, rough);
-                (counts & active & rough.distance.less(width)).any()
-            },
-        );
-        let Some(approach) = approach else { return };
-        let (counts, width) = self.counts(primitive, &approach);
-        let mut counts = counts & active;
-        // A curved surface surrounds the rays that start on it.
-        if P::IS_CURVED {
-            counts = counts & !paths.ignored.starts_on(number);
-        }
-        self.best = self
-            .best
-            .min(distance_in_pixels(counts, approach.distance, width));
+        let near = self.pixels_to(primitive, prepared, paths, number);
+        self.best = self.best.min(near);
+    }
+
+    #[inline(always)]
+    fn test_slice<P: Primitive<L::Real>>(
+        &mut self,
+        primitive: &P,
+        prepared: &P::Prepared<L>,
+        (paths, passing): (&Paths<L>, impl FnOnce() -> L::Mask),
+        number: usize,
+    ) {
+        self.note(self.pixels_to(primitive, prepared, paths, number), passing);
     }
 }

@@ -40,7 +40,7 @@ pub trait TreeVisitor<L: SimdFloat> {
     }
     /// Visits a member in one of its boxes for the rays that pass that box closely. The other rays pass it in another
     /// of its boxes, which they may see as one thing with what else is there.
-    fn visit_slice(&mut self, _member: u32, _passing: L::Mask) {}
+    fn visit_slice(&mut self, _member: u32, _passing: impl FnOnce() -> L::Mask) {}
     /// Visits a box for the rays that see its contents as one thing, given the ball around it and the thickness of
     /// its contents; it counts for those that pass it closely. Returns the first and those that are not active, bit
     /// by bit.
@@ -171,43 +171,38 @@ pub fn walk_thin<L: SimdFloat>(
         let mut bits = shaft.meets_thin::<L>(token, node, farthest, margin, &mut widths);
         visitor.exclude_lanes(merged_lanes);
         while bits != 0 {
-            let slot = bits.trailing_zeros();
+            let slot = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            let width = widths[slot as usize];
+            let width = widths[slot];
             let end = margin.end(reach, reach.like(width));
-            if !bundle
-                .lanes_meeting_box(node, slot as usize, end, width)
-                .any()
-            {
+            if !bundle.lanes_meeting_box(node, slot, end, width).any() {
                 continue;
             }
-            match node.child(slot as usize) {
+            match node.child(slot) {
                 Child::Member(member) if bvh.is_sliced && visitor.is_sliced(member) => {
-                    let slot = slot as usize;
-                    let contents = (&node.bounds(slot), thickness_of(node, slot));
-                    let passing = lanes_passing_box(bundle, contents, reach, &own_margin);
-                    if passing.any() {
-                        visitor.visit_slice(member, passing);
-                    }
+                    visitor.visit_slice(
+                        member,
+                        #[inline(always)]
+                        || lanes_passing_box(bundle, (node, slot), reach, &own_margin),
+                    );
                 }
                 Child::Member(member) => visitor.visit_member(member, width, stack),
                 Child::Node(inner) => {
                     let mut merged_lanes = merged_lanes;
-                    let bounds = node.bounds(slot as usize);
-                    let ball = bounds.ball();
+                    let ball = node.bounds(slot).ball();
                     if ball.1 + ball.1 < width * L::Real::from_f64(MERGED_SIZE) {
-                        let thickness = thickness_of(node, slot as usize);
+                        let thickness = L::Real::from_single(node.thickness[slot]);
                         merged_lanes |= visitor.visit_merged_box(
                             ball,
                             thickness,
                             #[inline(always)]
-                            || lanes_passing_box(bundle, (&bounds, thickness), reach, &own_margin),
+                            || lanes_passing_box(bundle, (node, slot), reach, &own_margin),
                         );
                     }
                     if merged_lanes & all != all {
                         stack.push(StackEntry {
                             node: index,
-                            slot,
+                            slot: slot as u32,
                             inner,
                             merged_lanes,
                             near: L::Real::ZERO,
@@ -222,9 +217,4 @@ pub fn walk_thin<L: SimdFloat>(
         let Some(next) = stack.pop() else { return };
         (index, merged_lanes) = (next.inner, next.merged_lanes);
     }
-}
-
-#[inline(always)]
-fn thickness_of<R: Real>(node: &Node, slot: usize) -> R {
-    R::from_single(node.thickness[slot])
 }
