@@ -1,6 +1,6 @@
 //! Groups boxes into the nodes of a tree: into pairs first, then into nodes of up to sixteen.
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -23,10 +23,13 @@ const MAX_PART_SIZE: usize = 1 << 14;
 /// Share of the boxes that are reinserted elsewhere after clustering, if that improves the tree.
 const REINSERTED: f32 = 0.02;
 
-/// Greatest distance by which boxes are moved for their grouping, as a share of their own longest side.
+/// Number of boxes that are sampled to find out whether many coincide.
+const SAMPLED: usize = 512;
+/// Greatest distance by which boxes are moved for their grouping if many coincide, as a share of the largest
+/// coordinate. With a thousandth of it, cylinders of 1,000 sides take 1.7 times as long with clean edges.
 const MAX_NUDGE: f32 = 1e-3;
-/// The same as a share of the largest coordinate: a few roundings, for boxes that are smaller than these.
-const MIN_NUDGE: f32 = 4.0 * f32::EPSILON;
+/// The same otherwise, as a share of their own coordinates: a few roundings.
+const MIN_NUDGE: f32 = 16.0 * f32::EPSILON;
 
 /// The content of one box of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,12 +153,27 @@ fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
     pairs
 }
 
+/// Returns whether many boxes coincide with others, judged by a sample.
+fn are_many_coincident(boxes: &[Aabb]) -> bool {
+    let step = boxes.len().div_ceil(SAMPLED).max(1);
+    let bits = |one: &Aabb| {
+        (
+            one.min.to_array().map(f32::to_bits),
+            one.max.to_array().map(f32::to_bits),
+        )
+    };
+    let sampled: Vec<_> = boxes.iter().step_by(step).map(bits).collect();
+    let different: HashSet<_> = sampled.iter().collect();
+    different.len() * 2 < sampled.len()
+}
+
 /// Moves each box a little in its own direction. Otherwise, all boxes of a regular row would choose the neighbour on the
 /// same side, and boxes in one place the same neighbour, so that only one pair at a time would be joined: 40,000
 /// triangles in a row took 27 s instead of 0.4 s. The moved boxes only determine the grouping.
 fn nudge(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
-    let least = boxes.iter().map(reach).fold(0.0, f32::max) * MIN_NUDGE;
+    let largest = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
+    let are_many_coincident = are_many_coincident(boxes);
     let mut state = 1_u32;
     let mut random = || {
         // A linear congruential generator: Knuth, "The art of computer programming" 2, §3.3.4.
@@ -163,8 +181,12 @@ fn nudge(boxes: &mut [Aabb]) {
         (state >> 8) as f32 / 16_777_216.0
     };
     for one in boxes {
-        let size = one.diagonal().max_element() * MAX_NUDGE;
-        let nudge = Vec3A::new(random(), random(), random()) * size.max(least);
+        let distance = if are_many_coincident {
+            largest * MAX_NUDGE
+        } else {
+            reach(one) * MIN_NUDGE
+        };
+        let nudge = Vec3A::new(random(), random(), random()) * distance;
         one.min += nudge;
         one.max += nudge;
     }
