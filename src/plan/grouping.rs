@@ -6,6 +6,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::morton::morton_encode_u64_unorm;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
@@ -20,16 +21,17 @@ pub const MAX_DEPTH: usize = 24;
 const PARTITION_THRESHOLD: usize = 1 << 17;
 /// Maximum number of boxes per part.
 const MAX_PART_SIZE: usize = 1 << 14;
+/// The same for boxes of which clustering joins few pairs at a time.
+const MAX_SLOW_PART_SIZE: usize = 1 << 10;
+/// Share of the boxes that find a partner at a time, below which that is too slow; usually, a third does.
+const MIN_JOINED: f64 = 1.0 / 16.0;
 /// Share of the boxes that are reinserted elsewhere after clustering, if that improves the tree.
 const REINSERTED: f32 = 0.02;
 
 /// Number of boxes that are sampled to find out whether many coincide.
 const SAMPLED: usize = 512;
-/// Greatest distance by which boxes are moved for their grouping if many coincide, as a share of the largest
-/// coordinate. With a thousandth of it, cylinders of 1,000 sides take 1.7 times as long with clean edges.
+/// Maximum distance by which coinciding boxes are moved, as a share of the largest coordinate.
 const MAX_NUDGE: f32 = 1e-3;
-/// The same otherwise, as a share of their own coordinates: a few roundings.
-const MIN_NUDGE: f32 = 16.0 * f32::EPSILON;
 
 /// The content of one box of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,14 +82,16 @@ pub fn group_boxes(boxes: &[Aabb]) -> Vec<WideNode> {
     build_nodes(boxes, &mut members, max_size, MAX_DEPTH)
 }
 
-/// Builds the tree over some of the boxes; splits them into parts first if there are more than `max_size`.
+/// Builds the tree over some of the boxes; splits them into parts first if there are more than `max_size`, or if they
+/// would be clustered too slowly.
 fn build_nodes(
     boxes: &[Aabb],
     members: &mut [u32],
     max_size: usize,
     max_depth: usize,
 ) -> Vec<WideNode> {
-    if members.len() > max_size {
+    let is_slow = members.len() > MAX_SLOW_PART_SIZE && are_joined_singly(boxes, members);
+    if members.len() > max_size || is_slow {
         let parts = split_into_parts(boxes, members).into_par_iter();
         let trees = parts.map(|part| build_nodes(boxes, part, max_size, max_depth - 1));
         return under_one_root(trees.collect());
@@ -140,7 +144,9 @@ fn under_one_root(trees: Vec<Vec<WideNode>>) -> Vec<WideNode> {
 /// Clusters boxes into a binary tree: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
 /// Hierarchy Construction", TVCG 24(3), 2018, followed by reinsertion of some boxes.
 fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
-    nudge(&mut boxes);
+    if are_many_coincident(&boxes) {
+        separate_coincident(&mut boxes);
+    }
     let mut pairs = PlocBuilder::with_capacity(boxes.len()).build(
         PlocSearchDistance::Low,
         &boxes,
@@ -151,6 +157,32 @@ fn build_pairs(mut boxes: Vec<Aabb>) -> Bvh2 {
     drop(boxes);
     ReinsertionOptimizer::default().run(&mut pairs, REINSERTED, None);
     pairs
+}
+
+/// Returns whether clustering would join few pairs at a time, as each box is to be the best partner of the other. In a
+/// regular row, all choose the neighbour on the same side: 40,000 triangles in a row took 27 s. In a nest of boxes, all
+/// choose the smaller one.
+fn are_joined_singly(boxes: &[Aabb], members: &[u32]) -> bool {
+    let own = |member: &u32| &boxes[*member as usize];
+    let around = members.iter().map(own);
+    let around = around.fold(Aabb::empty(), |around, one| around.union(one));
+    let scale = 1.0 / around.diagonal().as_dvec3();
+    // The order in which clustering looks for partners.
+    let mut curve: Vec<(u64, u32)> = members
+        .iter()
+        .map(|member| {
+            let middle = own(member).center() - around.min;
+            let place =
+                (middle.as_dvec3() * scale).map(|part| if part.is_finite() { part } else { 0.0 });
+            (morton_encode_u64_unorm(place), *member)
+        })
+        .collect();
+    curve.sort_unstable();
+    let cost = |pair: &[(u64, u32)]| own(&pair[0].1).union(own(&pair[1].1)).half_area();
+    let costs: Vec<f32> = curve.windows(2).map(cost).collect();
+    let is_joined = |three: &&[f32]| three[1] <= three[0] && three[1] < three[2];
+    let joined = costs.windows(3).filter(is_joined).count();
+    (joined as f64) < MIN_JOINED * members.len() as f64
 }
 
 /// Returns whether many boxes coincide with others, judged by a sample.
@@ -167,13 +199,11 @@ fn are_many_coincident(boxes: &[Aabb]) -> bool {
     different.len() * 2 < sampled.len()
 }
 
-/// Moves each box a little in its own direction. Otherwise, all boxes of a regular row would choose the neighbour on the
-/// same side, and boxes in one place the same neighbour, so that only one pair at a time would be joined: 40,000
-/// triangles in a row took 27 s instead of 0.4 s. The moved boxes only determine the grouping.
-fn nudge(boxes: &mut [Aabb]) {
+/// Moves each box a little in its own direction. Coinciding boxes would be joined one at a time, since all choose
+/// the same nearest neighbour: 40,000 balls took half a minute. The moved boxes only determine the grouping.
+fn separate_coincident(boxes: &mut [Aabb]) {
     let reach = |one: &Aabb| one.min.abs().max(one.max.abs()).max_element();
-    let largest = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
-    let are_many_coincident = are_many_coincident(boxes);
+    let size = boxes.iter().map(reach).fold(f32::MIN_POSITIVE, f32::max);
     let mut state = 1_u32;
     let mut random = || {
         // A linear congruential generator: Knuth, "The art of computer programming" 2, §3.3.4.
@@ -181,12 +211,7 @@ fn nudge(boxes: &mut [Aabb]) {
         (state >> 8) as f32 / 16_777_216.0
     };
     for one in boxes {
-        let distance = if are_many_coincident {
-            largest * MAX_NUDGE
-        } else {
-            reach(one) * MIN_NUDGE
-        };
-        let nudge = Vec3A::new(random(), random(), random()) * distance;
+        let nudge = Vec3A::new(random(), random(), random()) * (size * MAX_NUDGE);
         one.min += nudge;
         one.max += nudge;
     }
@@ -361,23 +386,39 @@ mod tests {
     }
 
     #[test]
-    fn boxes_in_a_row_or_in_one_place_go_together_two_by_two_and_not_one_by_one() {
+    fn boxes_in_one_place_go_together_two_by_two_and_not_one_by_one() {
+        let alike = vec![Aabb::new(Vec3A::ZERO, Vec3A::ONE); 3_000];
+        assert!(are_many_coincident(&alike));
+        let groups = widen(&build_pairs(alike), MAX_DEPTH).expect("a tree that is not deep");
+        let (found, max_depth) = found(&groups, 3_000);
+        assert!(found.iter().all(|&times| times == 1));
+        assert!(max_depth <= 12, "{max_depth}");
+        let apart = (0..3_000_u16).map(|x| Vec3A::X * f32::from(x));
+        let apart: Vec<_> = apart.map(|at| Aabb::new(at, at + Vec3A::ONE)).collect();
+        assert!(!are_many_coincident(&apart));
+    }
+
+    #[test]
+    fn boxes_of_which_few_are_joined_at_a_time_are_parted() {
+        let count = 3_000_u16;
         let unit = |at: Vec3A| Aabb::new(at, at + Vec3A::ONE);
-        let row = |step: f32| (0..3_000_u16).map(move |x| unit(Vec3A::X * f32::from(x) * step));
-        for step in [0.0, 0.1, 1.0] {
-            let pairs = build_pairs(row(step).collect());
-            let groups = widen(&pairs, MAX_DEPTH).expect("a tree that is not deep");
-            let (found, max_depth) = found(&groups, 3_000);
+        let row = |x: u16| unit(Vec3A::X * f32::from(x));
+        let nested = |x: u16| Aabb::new(Vec3A::ZERO, Vec3A::splat(1.0 + f32::from(x)));
+        let grid = |x: u16| unit(Vec3A::new(f32::from(x % 50), f32::from(x / 50), 0.0) * 1.5);
+        let makes: [(&dyn Fn(u16) -> Aabb, bool); 3] =
+            [(&row, true), (&nested, true), (&grid, false)];
+        for (make, is_slow) in makes {
+            let boxes: Vec<Aabb> = (0..count).map(make).collect();
+            let members: Vec<u32> = (0..count.into()).collect();
+            assert_eq!(
+                are_joined_singly(&boxes, &members),
+                is_slow,
+                "{:?}",
+                boxes[1]
+            );
+            let (found, max_depth) = found(&group_boxes(&boxes), boxes.len());
             assert!(found.iter().all(|&times| times == 1));
-            assert!(max_depth <= 12, "{step}: {max_depth}");
-            // Two are joined if each is the best partner of the other.
-            let mut boxes: Vec<Aabb> = row(step).collect();
-            nudge(&mut boxes);
-            let cost = |pair: &[Aabb]| pair[0].union(&pair[1]).half_area();
-            let costs: Vec<f32> = boxes.windows(2).map(cost).collect();
-            let is_joined = |three: &&[f32]| three[1] < three[0] && three[1] <= three[2];
-            let joined = costs.windows(3).filter(is_joined).count();
-            assert!(joined > 800, "{step}: {joined}");
+            assert!(max_depth <= MAX_DEPTH, "{max_depth}");
         }
     }
 
