@@ -353,7 +353,7 @@ pub fn is_cancelled(ui: &Ui, response: &Response) -> bool {
 /// `max_chars` characters.
 fn rounded(value: f64, unit: &str, max_chars: usize) -> String {
     let decimals = match value.abs() {
-        size if unit == "°" && size >= 0.1 => 2,
+        size if unit == "°" && size >= 0.01 => 2,
         size if size >= 100.0 => 2,
         size if size >= 1.0 => 3,
         size if size >= 1e-3 => 5,
