@@ -17,7 +17,8 @@
 //! only kernels compute with SIMD vectors ([`simd`]).
 //!
 //! A primitive consists of its description in [`scene`] (what the file and the inspector show) and its kernels in
-//! [`primitive`] (how rays hit it), with a line in the list of each, and a symbol in `ui/icons.rs`.
+//! [`primitive`] (how rays hit it), with a line in the list of each, a symbol in `ui/icons.rs`, and what the compiler
+//! then asks for.
 //!
 //! What happens when a slider is dragged: the panel clones the object, the widgets change the clone, and the panel
 //! pushes an [`editor::Action`]. After all panels are drawn, [`editor::Editor::apply`] checks what the new scene does

@@ -17,7 +17,7 @@ use std::time::Instant;
 use glam::DVec3;
 use glint::export::{save_image, write_text};
 use glint::image::{Film, Image, render_into};
-use glint::lab::{Crowd, Figure, Growth, PictureLook, RenderMethod};
+use glint::lab::{Crowd, Figure, Growth, PictureLook, RenderMethod, csv_of};
 use glint::plan::{Planner, RenderRequest};
 use glint::scene::{Document, EXAMPLES, Plane, Projection, Sampling, Scene, Shape};
 use glint::trace::{RenderControl, Threads};
@@ -99,7 +99,7 @@ fn chart_growth(file: &Path) {
     for obstacle in &growth.obstacles {
         println!("{obstacle}");
     }
-    let csv = growth.csv().expect("written");
+    let csv = csv_of(&growth.costs).expect("written");
     write_text(&file.with_extension("csv"), &csv).expect("written");
     let look = PictureLook {
         is_light: false,

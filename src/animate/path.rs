@@ -1,13 +1,13 @@
 //! The camera as a function of time.
 
 use std::array;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use glam::DVec3;
 
 use super::{ArcLengthSpline, Closing, Curve};
-use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME};
+use crate::scene::{Camera, Easing, Interpolation, Key, Orientation, SAME_TIME, wrapped_angle};
 
 /// Distance from the axis of an orbit below which a position counts as on it, as a share of the other end's
 /// distance.
@@ -212,7 +212,7 @@ fn is_on_axis(one: f64, other: f64) -> bool {
 
 /// Returns the equivalent angle of at most half a turn.
 fn shorter_turn(turn: f64) -> f64 {
-    let wound = (turn + PI).rem_euclid(TAU) - PI;
+    let wound = wrapped_angle(turn);
     // Half a turn is equally long in both directions: the positive one is chosen.
     if wound == -PI { PI } else { wound }
 }

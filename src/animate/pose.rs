@@ -14,7 +14,7 @@ pub fn pose(scene: &Arc<Scene>, time: f64) -> Arc<Scene> {
         return Arc::clone(scene);
     }
     let tracks = &scene.animation.tracks;
-    let owners = Owners::of(scene, tracks.iter().map(|track| &track.target));
+    let owners = Owners::of(scene, scene.animation.targets());
     let mut posed = Scene::clone(scene);
     for track in tracks {
         if let Some(value) = value_at(&track.keys, time) {

@@ -2,11 +2,10 @@
 //! shown, so that the recorded camera stands still in between, although the hand did not.
 
 use std::collections::HashSet;
-use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use crate::scene::{Sample, Take};
+use crate::scene::{Sample, Take, wrapped_angle};
 
 /// Longest time between two movements, in seconds, that is not a pause.
 const PAUSE: f64 = 0.15;
@@ -26,7 +25,7 @@ pub fn resampled(take: &Take) -> (Take, usize) {
     }
     for (from, to) in steps(samples, |a, b| angles(a) == angles(b)) {
         let (before, after) = (angles(&samples[from]), angles(&samples[to]));
-        let turn = (after - before).map(|angle| (angle + PI).rem_euclid(TAU) - PI);
+        let turn = (after - before).map(wrapped_angle);
         for n in from + 1..to {
             let turned = before + turn * share(samples, (from, n, to));
             let sample = &mut even.samples[n];

@@ -1,4 +1,4 @@
-//! Changing the timing of a flight.
+//! Changing the timing and the smoothness of a flight.
 
 use super::path::nearest_equivalent;
 use super::{CameraChange, CameraPath, motion_between};

@@ -18,7 +18,7 @@ use crate::export::write_text;
 use crate::files::is_same_file;
 use crate::lab::{
     Figure, Growth, PictureLook, Study, cheapest_within, closest_within, costs_of_choices, csv,
-    scaling, scaling_csv, table,
+    csv_of, scaling, table,
 };
 use crate::machine::processor;
 use crate::plan::RenderRequest;
@@ -136,7 +136,7 @@ pub fn run(args: &ChartArgs) -> Result<CliAction, CliError> {
     if args.growth {
         return measure_growth(args, &threads);
     }
-    // So is a scene that cannot be read.
+    // A scene that cannot be read is reported before anything is measured.
     let scenes = args.scenes.iter().map(|path| Ok((path, read_scene(path)?)));
     let scenes = scenes.collect::<Result<Vec<_>, CliError>>()?;
     if args.cores {
@@ -212,11 +212,7 @@ fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<CliAction, CliE
     if args.povray {
         growth = growth.with_povray();
     }
-    let bar = progress_bar(BAR_STEPS, SHARE_TEMPLATE);
-    while threads.run(|| growth.step()) {
-        bar.set_position((growth.progress() * BAR_STEPS as f64) as u64);
-    }
-    bar.finish_and_clear();
+    run_with_bar(threads, || growth.step().then(|| growth.progress()));
     for obstacle in &growth.obstacles {
         report_warning(obstacle);
     }
@@ -231,7 +227,7 @@ fn measure_growth(args: &ChartArgs, threads: &Threads) -> Result<CliAction, CliE
         ));
     }
     if let Some(path) = &args.csv {
-        write_text(path, &growth.csv()?)?;
+        write_text(path, &csv_of(&growth.costs)?)?;
     }
     let figure = Figure::Growth(growth, args.picture_look());
     Ok(CliAction::drawing(figure, args.png.clone()))
@@ -262,17 +258,22 @@ fn simulate_cores(args: &ChartArgs, scenes: &[(&PathBuf, Scene)]) -> Result<CliA
         ));
     }
     if let Some(path) = &args.csv {
-        write_text(path, &scaling_csv(&pictures)?)?;
+        write_text(path, &csv_of(&pictures)?)?;
     }
     let figure = Figure::Scaling(pictures, args.picture_look());
     Ok(CliAction::drawing(figure, args.png.clone()))
 }
 
 fn measure(study: &mut Study, threads: &Threads) {
-    let bar = progress_bar(BAR_STEPS, SHARE_TEMPLATE);
     let control = RenderControl::default();
-    while threads.run(|| study.step(&control)) {
-        bar.set_position((study.progress() * BAR_STEPS as f64) as u64);
+    run_with_bar(threads, || study.step(&control).then(|| study.progress()));
+}
+
+/// Shows a progress bar while `step` returns the share that is done; `None` ends it.
+fn run_with_bar(threads: &Threads, mut step: impl FnMut() -> Option<f64> + Send) {
+    let bar = progress_bar(BAR_STEPS, SHARE_TEMPLATE);
+    while let Some(share) = threads.run(&mut step) {
+        bar.set_position((share * BAR_STEPS as f64) as u64);
     }
     bar.finish_and_clear();
 }

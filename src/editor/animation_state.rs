@@ -1,6 +1,5 @@
 //! The state of an animated scene at the playhead, and the timeline's effect on it.
 
-use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::edit::Replaced;
@@ -268,12 +267,7 @@ impl AnimationState {
             self.keep_unkeyed(scene, next);
         }
         let time = self.timeline.shown_time(&next.animation);
-        let targets: Vec<Target> = next
-            .animation
-            .tracks
-            .iter()
-            .map(|track| track.target.clone())
-            .collect();
+        let targets: Vec<Target> = next.animation.targets().cloned().collect();
         // Owners are resolved once for each scene, as their list indices may differ.
         let scenes = [scene, &self.shown, &*next];
         let [in_scene, in_shown, in_next] = scenes.map(|scene| Owners::of(scene, &targets));
@@ -302,10 +296,7 @@ impl AnimationState {
     /// Writes the shown value of each target that has a track in `scene`, but none in `next`, to `next`: what loses
     /// its last key stays as it is seen.
     fn keep_unkeyed(&self, scene: &Scene, next: &mut Scene) {
-        let kept = next.animation.tracks.iter().map(|track| &track.target);
-        let kept: HashSet<&Target> = kept.collect();
-        let before = scene.animation.tracks.iter().map(|track| &track.target);
-        let gone: Vec<&Target> = before.filter(|target| !kept.contains(target)).collect();
+        let gone = scene.animation.targets_lost_in(&next.animation);
         let [in_shown, in_next] =
             [&*self.shown, &*next].map(|scene| Owners::of(scene, gone.iter().copied()));
         for target in gone {

@@ -45,10 +45,7 @@ pub fn excerpt(scene: &Scene, selected: &Selection) -> Scene {
 
 /// Returns the tracks of `scene` that animate things in `part`, an excerpt of it.
 fn tracks_of(part: &Scene, scene: &Scene) -> Vec<Track> {
-    let owners = Owners::of(
-        part,
-        scene.animation.tracks.iter().map(|track| &track.target),
-    );
+    let owners = Owners::of(part, scene.animation.targets());
     let tracks = scene.animation.tracks.iter();
     let owned = tracks.filter(|track| owners.index(&track.target).is_some());
     owned.cloned().collect()

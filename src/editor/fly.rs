@@ -2,10 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Camera, MAX_COORDINATE, Orientation, Projection};
-
-/// Least height of an orthographic picture, in world units: the limit of zooming in.
-const MIN_HEIGHT: f64 = 1e-6;
+use crate::scene::{Camera, MAX_COORDINATE, MIN_ORTHOGRAPHIC_HEIGHT, Orientation, Projection};
 
 /// A step of a flight: distances in world units, turns in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,7 +79,8 @@ impl Flight {
                 Projection::Perspective => next.position -= basis.z_axis * motion.forward,
                 Projection::Orthographic => {
                     let height = next.orthographic_height * (-motion.zoom).exp();
-                    next.orthographic_height = height.clamp(MIN_HEIGHT, MAX_COORDINATE);
+                    next.orthographic_height =
+                        height.clamp(MIN_ORTHOGRAPHIC_HEIGHT, MAX_COORDINATE);
                 }
             }
         }

@@ -1,7 +1,5 @@
 //! Messages to the user.
 
-use std::collections::HashSet;
-
 use indexmap::IndexSet;
 
 use super::action::{Message, STEP};
@@ -98,12 +96,8 @@ impl Editor {
     }
 
     fn lost_keys(&self, next: &Scene) -> Option<String> {
-        let kept = next.animation.tracks.iter().map(|track| &track.target);
-        let kept: HashSet<&Target> = kept.collect();
-        let tracks = self.scene.animation.tracks.iter();
-        let targets = tracks.map(|track| &track.target);
-        let lost = targets.filter(|target| !kept.contains(target));
-        let keys = listed(lost.map(Target::name));
+        let lost = self.scene.animation.targets_lost_in(&next.animation);
+        let keys = listed(lost.into_iter().map(Target::name));
         keys.map(|names| format!("keys were deleted too ({names}); undo brings them back"))
     }
 

@@ -66,7 +66,7 @@ pub struct Timeline {
     pub speed: f64,
     /// Whether to look through the shot camera, if there are keys.
     pub(super) wants_shot: bool,
-    /// Most deviation of keys from their take, in pixels of a picture 1024 high.
+    /// Largest deviation of keys from their take, in pixels of a picture 1024 high.
     pub tolerance: f64,
     /// Where the keys deviate from the recording the most, in the same pixels; `None` without a recording.
     pub worst: Option<WorstDeviation>,

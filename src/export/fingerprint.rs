@@ -48,11 +48,8 @@ fn stripped(shown: &Scene) -> Scene {
 
 /// Replaces the names of color packs in use by numbers, and drops unused ones.
 fn number_packs(scene: &mut Scene) {
-    let used = scene.used_packs();
-    let packs = scene.color_packs.iter();
-    let packs = packs.filter(|(name, _)| used.contains(name.as_str()));
     let (mut numbers, mut numbered) = (HashMap::new(), IndexMap::new());
-    for (number, (name, pack)) in packs.enumerate() {
+    for (number, (name, pack)) in scene.packs_in_use().enumerate() {
         numbers.insert(name.clone(), number.to_string());
         numbered.insert(number.to_string(), pack.clone());
     }

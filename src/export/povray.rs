@@ -18,8 +18,8 @@ use crate::files::without_path;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, Coincidence, ColorPack, Disc, Light, Mesh, Object, Overlap, Plane, Projection, Render,
-    Scene, Shape, Sphere, Triangle, coincidences, unit,
+    Camera, Coincidence, ColorPack, Disc, Light, Mesh, Object, Plane, Projection, Render, Scene,
+    Shape, Sphere, Triangle, coincidences, unit,
 };
 use crate::trace::RenderControl;
 
@@ -282,8 +282,7 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     );
     let centre = scene.middle().unwrap_or_default();
     let is_visible_overlap = |found: &Coincidence| {
-        let is_hidden = matches!(found.extent, Overlap::Standing | Overlap::Touching);
-        !is_hidden && !scene.look_alike(found.later, found.earlier)
+        !found.extent.is_hidden() && !scene.look_alike(found.later, found.earlier)
     };
     let found = coincidences(&scene.objects, centre);
     let coincident = found.iter().any(is_visible_overlap).then_some(

@@ -18,8 +18,7 @@ pub struct RenderCost {
     pub lanes: String,
 }
 
-/// Traces a whole picture on the current rayon pool. `None` if `control` was
-/// stopped.
+/// Traces a whole picture on the current rayon pool. `None` if `control` was stopped.
 pub fn render(
     scene: &Scene,
     request: &RenderRequest,

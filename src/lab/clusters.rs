@@ -69,42 +69,39 @@ pub fn clusters(study: &Study) -> Vec<Vec<usize>> {
 /// Returns the indices of the Pareto-optimal ways. Only the first way of each group is considered, and doubtful ones
 /// are ignored.
 pub fn front_of(study: &Study) -> Vec<usize> {
-    front(&costs_of_dots(study))
-}
-
-/// Milliseconds and RMSE of the first way of each group; NaN for the others, and for doubtful ones.
-fn costs_of_dots(study: &Study) -> Vec<(f64, f64)> {
-    let all = study.certain_costs();
-    let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
-    for cluster in clusters(study) {
-        costs[cluster[0]] = all[cluster[0]];
-    }
-    costs
+    front(&costs_of_firsts(study, |_| true))
 }
 
 /// Milliseconds and RMSE of the first way of each group that can be chosen for a scene; NaN for the others. Doubtful
 /// times count as their slowest run: a way that is faster even then is worth choosing. Excluded are other engines,
 /// smaller pictures, and models that skip less or show other things, which serve for comparison only.
 pub fn costs_of_choices(study: &Study) -> Vec<(f64, f64)> {
-    let all = study.certain_costs();
-    let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
-    let can_be_chosen = |index: &usize| {
+    let mut costs = costs_of_firsts(study, |candidate| {
         let Candidate {
             family,
             model,
             upscale,
             ..
-        } = study.measurements[*index].candidate;
+        } = *candidate;
         family != Family::Referee && model == Model::Needed && upscale == 1
-    };
+    });
+    for (cost, measurement) in costs.iter_mut().zip(&study.measurements) {
+        if cost.1.is_finite() && measurement.is_doubtful() {
+            cost.0 = measurement.times.iter().copied().fold(0.0, f64::max);
+        }
+    }
+    costs
+}
+
+/// Milliseconds and RMSE of the first way of each group for which `is_wanted` holds; NaN for the others. Those of
+/// doubtful ones are as in [`Study::certain_costs`].
+fn costs_of_firsts(study: &Study, is_wanted: impl Fn(&Candidate) -> bool) -> Vec<(f64, f64)> {
+    let all = study.certain_costs();
+    let mut costs = vec![(f64::NAN, f64::NAN); all.len()];
+    let is_wanted = |index: &usize| is_wanted(&study.measurements[*index].candidate);
     for cluster in clusters(study) {
-        let Some(first) = cluster.into_iter().find(can_be_chosen) else {
-            continue;
-        };
-        costs[first] = all[first];
-        let measurement = &study.measurements[first];
-        if measurement.is_doubtful() {
-            costs[first].0 = measurement.times.iter().copied().fold(0.0, f64::max);
+        if let Some(first) = cluster.into_iter().find(is_wanted) {
+            costs[first] = all[first];
         }
     }
     costs

@@ -224,8 +224,8 @@ fn nearest_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<RayHit<
         let kind = HitKind::Object(index);
         Some(RayHit { t, normal, kind })
     });
-    let lights = scene.lights.iter();
-    let lights = lights.filter(|light| light.visible && scene.light_visualization);
+    let lights = scene.visible_lights();
+    let lights = lights.filter(|_| scene.light_visualization);
     let markers = lights.filter_map(|light| {
         let marker = light.marker.as_ref()?;
         let (t, normal) = intersect_sphere(light.position, marker.radius, origin, direction)?;

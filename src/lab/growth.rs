@@ -6,7 +6,6 @@ use std::time::Instant;
 use glam::DVec3;
 use serde::Serialize;
 
-use super::table::csv_of;
 use crate::export::by_povray;
 use crate::image::LinearRgb;
 use crate::mesh::globe;
@@ -168,14 +167,6 @@ impl Growth {
     pub fn progress(&self) -> f64 {
         self.costs.len() as f64 / self.cases().count().max(1) as f64
     }
-
-    /// All costs as comma-separated values.
-    ///
-    /// # Errors
-    /// None is known: everything is written to memory.
-    pub fn csv(&self) -> Result<String, csv::Error> {
-        csv_of(&self.costs)
-    }
 }
 
 impl Cost {
@@ -318,6 +309,7 @@ fn balls(count: u32) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::csv_of;
     use crate::scene::check;
 
     #[test]
@@ -367,7 +359,7 @@ mod tests {
                 .iter()
                 .all(|cost| cost.ms > 0.0 && cost.plan_ms.is_some_and(|ms| ms > 0.0))
         );
-        let text = growth.csv().expect("written");
+        let text = csv_of(&growth.costs).expect("written");
         assert!(
             text.starts_with("crowd,way,primitives,ms,plan_ms\nmesh,plain,80,"),
             "{text}"

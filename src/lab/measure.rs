@@ -63,12 +63,13 @@ pub fn quantile(ascending: &[f64], share: f64) -> Option<f64> {
     Some(below + (above - below) * rank.fract())
 }
 
-/// The mean of two pictures of the same size.
-pub fn mean(first: &[LinearRgb], second: &[LinearRgb]) -> Vec<LinearRgb> {
+/// The mean of two independent pictures of the same size, and its standard error.
+pub fn mean_of_two(first: &[LinearRgb], second: &[LinearRgb]) -> (Vec<LinearRgb>, f64) {
     let pixels = first.iter().zip(second);
-    pixels
+    let mean = pixels
         .map(|(a, b)| std::array::from_fn(|channel| 0.5 * (a[channel] + b[channel])))
-        .collect()
+        .collect();
+    (mean, difference(first, second).rmse / 2.0)
 }
 
 /// Traces a picture as linear light on the current rayon pool; `None` if `control` stopped it.

@@ -1,23 +1,21 @@
 //! The Pareto front of cost and error.
 
+use std::cmp::Ordering;
+
 /// Share to which the error must fall to justify a higher cost: smaller gains would vanish in the next measurement.
 const MAX_ERROR_RATIO: f64 = 0.99;
 
 /// Returns the indices of the dots (cost, error), by cost, whose error is clearly less than that of every cheaper
 /// one. Dots with a number that is not finite are never on the front.
-pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
-    let is_finite =
-        |&index: &usize| measurements[index].0.is_finite() && measurements[index].1.is_finite();
-    let mut indices: Vec<usize> = (0..measurements.len()).filter(is_finite).collect();
-    indices.sort_by(|&a, &b| {
-        let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
-        by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
-    });
+pub fn front(costs: &[(f64, f64)]) -> Vec<usize> {
+    let is_finite = |&index: &usize| costs[index].0.is_finite() && costs[index].1.is_finite();
+    let mut indices: Vec<usize> = (0..costs.len()).filter(is_finite).collect();
+    indices.sort_by(|&a, &b| order(costs[a], costs[b]));
     let mut least_error = f64::INFINITY;
     indices.retain(|&index| {
-        let is_better = measurements[index].1 < least_error * MAX_ERROR_RATIO;
+        let is_better = costs[index].1 < least_error * MAX_ERROR_RATIO;
         if is_better {
-            least_error = measurements[index].1;
+            least_error = costs[index].1;
         }
         is_better
     });
@@ -25,19 +23,22 @@ pub fn front(measurements: &[(f64, f64)]) -> Vec<usize> {
 }
 
 /// Returns the index of the cheapest dot (cost, error) within both bounds, if there is one.
-pub fn cheapest_within(measurements: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
-    let fits = |&index: &usize| measurements[index].1 <= error && measurements[index].0 <= cost;
-    let fitting = (0..measurements.len()).filter(fits);
-    fitting.min_by(|&a, &b| {
-        let by_cost = measurements[a].0.total_cmp(&measurements[b].0);
-        by_cost.then(measurements[a].1.total_cmp(&measurements[b].1))
-    })
+pub fn cheapest_within(costs: &[(f64, f64)], error: f64, cost: f64) -> Option<usize> {
+    let fits = |&index: &usize| costs[index].1 <= error && costs[index].0 <= cost;
+    let fitting = (0..costs.len()).filter(fits);
+    fitting.min_by(|&a, &b| order(costs[a], costs[b]))
+}
+
+/// Orders dots (cost, error) by cost, and equal costs by error.
+fn order(one: (f64, f64), other: (f64, f64)) -> Ordering {
+    let by_cost = one.0.total_cmp(&other.0);
+    by_cost.then(one.1.total_cmp(&other.1))
 }
 
 /// Returns the index of the dot (cost, error) with the least error among those of at most this cost:
 /// [`cheapest_within`] with the axes swapped.
-pub fn closest_within(measurements: &[(f64, f64)], cost: f64) -> Option<usize> {
-    let swapped: Vec<(f64, f64)> = measurements.iter().map(|&(c, e)| (e, c)).collect();
+pub fn closest_within(costs: &[(f64, f64)], cost: f64) -> Option<usize> {
+    let swapped: Vec<(f64, f64)> = costs.iter().map(|&(c, e)| (e, c)).collect();
     cheapest_within(&swapped, cost, f64::INFINITY)
 }
 

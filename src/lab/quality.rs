@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use super::candidates::samplings;
-use super::measure::{decibels, difference, mean};
+use super::measure::{decibels, difference, mean_of_two};
 use super::pareto_front::{cheapest_within, closest_within};
 use crate::image::LinearRgb;
 use crate::plan::{Planner, RenderRequest};
@@ -89,9 +89,7 @@ pub fn choose(
     let mut strips = MeasuredStrips::new(scene, request, planner, control);
     let (reference, first) = strips.trace(Sampling::Grid(REFERENCE_GRIDS[0]))?;
     let (other, _) = strips.trace(Sampling::Grid(REFERENCE_GRIDS[1]))?;
-    // The standard error of the mean of two.
-    let reference_error = difference(&reference, &other).rmse / 2.0;
-    let reference = mean(&reference, &other);
+    let (reference, reference_error) = mean_of_two(&reference, &other);
     // Meshes are prepared once, for all samplings, but whoever traces the picture has to wait for that again.
     let planned_with_meshes = first.planned;
     let mut measured: Vec<(Sampling, (f64, f64))> = Vec::new();

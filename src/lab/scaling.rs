@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::table::csv_of;
 use crate::plan::{Planner, RenderRequest};
 use crate::scene::Scene;
 use crate::trace::Tracer;
@@ -72,14 +71,6 @@ pub fn scaling(name: &str, scene: &Scene, request: &RenderRequest) -> Vec<Shared
     measured.into_iter().map(picture).collect()
 }
 
-/// All figures as comma-separated values.
-///
-/// # Errors
-/// None is known: everything is written to memory.
-pub fn scaling_csv(pictures: &[SharedPicture]) -> Result<String, csv::Error> {
-    csv_of(pictures)
-}
-
 /// Returns when the last piece is done if each worker halves its range down to one piece, always keeping the first
 /// half and putting the other aside, and idle workers steal the range that another one put aside first, as in rayon
 /// (Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999).
@@ -111,6 +102,7 @@ fn makespan(times: &[Duration], workers: usize) -> Duration {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::csv_of;
 
     #[test]
     fn workers_share_until_a_single_piece_is_left() {
@@ -134,7 +126,7 @@ mod tests {
         let is_share = |picture: &SharedPicture| (0.0..=1.0).contains(&picture.efficiency);
         assert!(pictures.iter().all(is_share), "{pictures:?}");
         assert!(pictures.iter().all(|picture| picture.ms > 0.0));
-        let text = scaling_csv(&pictures).expect("written");
+        let text = csv_of(&pictures).expect("written");
         assert!(
             text.starts_with("scene,workers,pieces,ms,efficiency\ndemo,1,"),
             "{text}"

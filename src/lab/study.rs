@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::candidates::{Candidate, Family, candidates, povray};
-use super::measure::{ErrorMetrics, difference, eight_bits, mean, quantile, scaled, trace_light};
+use super::measure::{
+    ErrorMetrics, difference, eight_bits, mean_of_two, quantile, scaled, trace_light,
+};
 use crate::export::{PovrayError, by_povray};
 use crate::image::{Image, LinearRgb, render_into};
 use crate::plan::{Planner, RenderRequest};
@@ -196,8 +198,7 @@ impl Study {
             .position(|reference| reference.len() < width * height);
         let Some(index) = unfinished else {
             let [first, second] = std::mem::take(&mut self.references);
-            let rmse = difference(&first, &second).rmse / 2.0;
-            let mean = mean(&first, &second);
+            let (mean, rmse) = mean_of_two(&first, &second);
             let picture = Arc::new(eight_bits(mean.clone(), (width, height)));
             self.reference = Some(Reference { rmse, picture });
             self.references[0] = Arc::new(mean);
@@ -220,12 +221,8 @@ impl Study {
     fn measure_error(&mut self, index: usize, control: &RenderControl) {
         let candidate = &self.measurements[index].candidate;
         if candidate.family == Family::Referee {
-            match self.measure_povray(index, control) {
-                Ok(()) | Err(PovrayError::Stopped) => {}
-                Err(error) => {
-                    self.obstacle = Some(error.to_string());
-                    self.measurements.remove(index);
-                }
+            if let Err(error) = self.measure_povray(index, control) {
+                self.leave_out(index, &error);
             }
             return;
         }
@@ -241,6 +238,14 @@ impl Study {
         dot.rays_per_pixel = rays.total() as f64 / (size.0 * size.1) as f64;
         dot.picture = Some(Arc::new(eight_bits(light, size)));
         dot.lanes = tracer.lanes();
+    }
+
+    /// Removes a measurement that cannot be made, unless it was only stopped.
+    fn leave_out(&mut self, index: usize, error: &PovrayError) {
+        if !matches!(error, PovrayError::Stopped) {
+            self.obstacle = Some(error.to_string());
+            self.measurements.remove(index);
+        }
     }
 
     /// Draws the picture with POV-Ray, and records its first time.
@@ -274,11 +279,7 @@ impl Study {
             let scene = dot.candidate.scene(&self.scene);
             match by_povray(&scene, Threads::current(), control) {
                 Ok(drawn) => dot.times.push(milliseconds(drawn.time)),
-                Err(PovrayError::Stopped) => {}
-                Err(error) => {
-                    self.obstacle = Some(error.to_string());
-                    self.measurements.remove(index);
-                }
+                Err(error) => self.leave_out(index, &error),
             }
             return true;
         }

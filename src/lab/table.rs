@@ -38,11 +38,11 @@ pub fn table(study: &Study) -> String {
         );
     }
     let (width, height) = study.size();
-    if let Some(truth) = &study.reference {
+    if let Some(reference) = &study.reference {
         let _ = writeln!(
             text,
             "{width}×{height}; reference: f64, {REFERENCE_SAMPLES} samples per pixel, with an error of {:.1e}; 8 bits cannot show errors below {:.1e}",
-            truth.rmse,
+            reference.rmse,
             super::EIGHT_BIT_FLOOR
         );
     }
@@ -94,7 +94,7 @@ fn figures<'a>(
 ) -> impl Iterator<Item = Figures<'a>> {
     let front = front_of(study);
     let reference = study.reference.as_ref();
-    let reference_rmse = reference.map_or(f64::NAN, |truth| truth.rmse);
+    let reference_rmse = reference.map_or(f64::NAN, |reference| reference.rmse);
     let (width, height) = study.size();
     let dots = study.measurements.iter().enumerate();
     dots.filter_map(move |(index, dot)| {

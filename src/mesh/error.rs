@@ -102,6 +102,10 @@ impl Fault {
 
 /// Most characters of an error message.
 const MAX_MESSAGE_CHARS: usize = 240;
+/// Most characters of a word that a message quotes.
+pub(super) const MAX_WORD_CHARS: usize = 24;
+/// Most characters of a file name in a message.
+pub(super) const MAX_NAME_CHARS: usize = 80;
 
 /// Returns at most `max_chars` characters of a text, with control characters replaced by spaces; `…` marks a cut.
 pub(super) fn excerpt(text: &str, max_chars: usize) -> String {

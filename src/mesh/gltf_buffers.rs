@@ -13,7 +13,7 @@ use gltf::buffer::Source;
 use gltf::buffer::View;
 use gltf::{Accessor, Document};
 
-use super::error::{Fault, excerpt};
+use super::error::{Fault, MAX_NAME_CHARS, excerpt};
 use super::limits::{check, read_companion};
 use crate::files::{stays_inside, with_separators};
 
@@ -248,7 +248,7 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
             .map_err(|error| Fault::new(format!("an embedded buffer is broken: {error}")));
     }
     if uri.contains("://") {
-        let uri = excerpt(uri, 80);
+        let uri = excerpt(uri, MAX_NAME_CHARS);
         return Err(Fault::new(format!(
             "its buffer {uri} is not on this machine"
         )));
@@ -256,14 +256,14 @@ fn read_uri(uri: &str, folder: &Path) -> Result<Vec<u8>, Fault> {
     let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
     let name = with_separators(folder, &name);
     if !stays_inside(folder, Path::new(&name)) {
-        let name = excerpt(&name, 80);
+        let name = excerpt(&name, MAX_NAME_CHARS);
         return Err(Fault::new(format!(
             "its buffer {name} is not read: it must be in the folder of the file, or below it"
         )));
     }
     let path = folder.join(&name);
     read_companion(&path).map_err(|error| {
-        let name = excerpt(&name, 80);
+        let name = excerpt(&name, MAX_NAME_CHARS);
         Fault::new(format!("cannot read its buffer {name}: {error}"))
     })
 }

@@ -16,7 +16,9 @@ use super::error::Fault;
 use super::gltf_buffers::Buffers;
 use super::gltf_skin::Placement;
 use super::limits::{check, check_faces, check_groups, check_points};
-use super::part::{MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TRANSPARENT, Part, PartColors};
+use super::part::{
+    MeshFile, NOTE_EMISSIVE, NOTE_POINT_COLORS, NOTE_TEXTURES, NOTE_TRANSPARENT, Part, PartColors,
+};
 use super::polygon::{fan, strip};
 use super::triangles::Triangles;
 
@@ -110,7 +112,7 @@ fn notes(document: &Document, has_animations: bool) -> Vec<String> {
             primitives().any(|one| one.morph_targets().len() > 0),
             "its morph targets are left out",
         ),
-        (document.textures().len() > 0, "its textures are left out"),
+        (document.textures().len() > 0, NOTE_TEXTURES),
         (document.cameras().len() > 0, "its cameras are left out"),
         (uses("KHR_lights_punctual"), "its lights are left out"),
         (has_animations, "its animations are left out"),

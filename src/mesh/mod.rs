@@ -45,7 +45,7 @@ use crate::files::{Marks, file_marks, has_ending};
 pub use error::MeshError;
 pub use part::{MeshFile, Part, PartColors};
 pub use solids::{SOLIDS, Solid, globe, icosphere};
-pub use triangles::{MAX_ABS_COORDINATE, Triangles, are_closed, position_key};
+pub use triangles::{MAX_COORDINATE, Triangles, are_closed, is_in_bounds, position_key};
 
 /// File format of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use tobj::{LoadError, MTLLoadResult, Material};
 
-use super::error::excerpt;
+use super::error::{MAX_NAME_CHARS, excerpt};
 use super::limits::read_bounded;
-use super::part::{NOTE_EMISSIVE, NOTE_TRANSPARENT, PartColors};
+use super::part::{NOTE_EMISSIVE, NOTE_TEXTURES, NOTE_TRANSPARENT, PartColors};
 use super::text::text_of;
 use crate::files::stays_inside;
 
@@ -21,8 +21,6 @@ const MAX_BYTES: u64 = 4 << 20;
 const MAX_SEARCHES: u32 = 32;
 /// The illumination models with traced reflections: Alias/Wavefront, "Object files", appendix B1.
 const MIRRORING: RangeInclusive<u8> = 3..=7;
-/// Most characters of a file name in a message.
-const MAX_NAME: usize = 80;
 
 /// Names that exporters write for faces without a material.
 const NO_MATERIAL: [&str; 2] = ["None", "(null)"];
@@ -70,7 +68,7 @@ impl<'a> Libraries<'a> {
     /// The notes on properties of materials that are left out.
     pub(super) fn omission_notes(&self) -> impl Iterator<Item = String> {
         let notes = [
-            (&self.has_textures, "its textures are left out"),
+            (&self.has_textures, NOTE_TEXTURES),
             (&self.is_clear, NOTE_TRANSPARENT),
             (&self.glows, NOTE_EMISSIVE),
         ];
@@ -81,21 +79,21 @@ impl<'a> Libraries<'a> {
     /// The note on material files that could not be read, or materials that are not in them.
     pub(super) fn note(&self) -> Option<String> {
         if let Some(missing) = self.missing.take() {
-            let name = excerpt(&missing, MAX_NAME);
+            let name = excerpt(&missing, MAX_NAME_CHARS);
             return Some(format!(
                 "its colours are missing: there is no readable file {name} beside it, of at most {} MiB",
                 MAX_BYTES >> 20
             ));
         }
         if let Some(unknown) = self.unknown.take() {
-            let name = excerpt(&unknown, MAX_NAME);
+            let name = excerpt(&unknown, MAX_NAME_CHARS);
             return Some(format!(
                 "it uses the material {name}, which is in none of its material files"
             ));
         }
         let has_any = !self.names.borrow().is_empty();
         let used_early = self.used_early.take().filter(|_| has_any)?;
-        let name = excerpt(&used_early, MAX_NAME);
+        let name = excerpt(&used_early, MAX_NAME_CHARS);
         Some(format!(
             "some colours are missing: it uses {name} before naming its material file"
         ))

@@ -1,11 +1,8 @@
 //! Locates the error in an OBJ file that `tobj` has refused: `tobj` says what is wrong, but not where.
 
-use super::error::{Fault, excerpt};
+use super::error::{Fault, MAX_WORD_CHARS, excerpt};
 use super::obj_lines::LineKind;
-use super::triangles::MAX_ABS_COORDINATE;
-
-/// Most characters of a word that an error message quotes.
-const EXCERPT: usize = 24;
+use super::triangles::MAX_COORDINATE;
 
 /// Finds the first faulty line. If there is none, the fault repeats `message`, that of `tobj`.
 pub(super) fn find_fault(text: &str, message: &str) -> Fault {
@@ -55,12 +52,12 @@ fn point_error<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<String> {
         let Some(number) = number else {
             return Some(format!(
                 "the coordinate {:?} is not a finite number",
-                excerpt(word, EXCERPT)
+                excerpt(word, MAX_WORD_CHARS)
             ));
         };
-        if number.abs() > MAX_ABS_COORDINATE {
+        if number.abs() > MAX_COORDINATE {
             return Some(format!(
-                "the coordinate {number:e} is beyond {MAX_ABS_COORDINATE:e}"
+                "the coordinate {number:e} is beyond {MAX_COORDINATE:e}"
             ));
         }
     }
@@ -73,13 +70,13 @@ fn corner_error(word: &str, before: usize, total: usize) -> Option<String> {
     let Some(point) = numbers.next().and_then(|text| text.parse::<isize>().ok()) else {
         return Some(format!(
             "the corner {:?} of this face is not the number of a point",
-            excerpt(word, EXCERPT)
+            excerpt(word, MAX_WORD_CHARS)
         ));
     };
     if numbers.clone().count() > 2 || !numbers.all(is_number) {
         return Some(format!(
             "the corner {:?} of this face is not written like 1, 1/2, 1//3 or 1/2/3",
-            excerpt(word, EXCERPT)
+            excerpt(word, MAX_WORD_CHARS)
         ));
     }
     // A negative number counts backwards from the last point before the face.

@@ -33,6 +33,8 @@ pub(super) const NOTE_POINT_COLORS: &str = "colours of points or faces are left 
 pub(super) const NOTE_TRANSPARENT: &str = "transparent materials are shown opaque";
 /// The note on emissive materials, which scenes do not support: only lights emit light.
 pub(super) const NOTE_EMISSIVE: &str = "glowing materials do not glow";
+/// Note about textures.
+pub(super) const NOTE_TEXTURES: &str = "its textures are left out";
 
 /// A group or object of an OBJ file, a primitive of a glTF file, or the whole of an STL or PLY file.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use ply_rs_bw::ply::{
     ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::error::excerpt;
+use super::error::{MAX_WORD_CHARS, excerpt};
 
 /// The properties of an element that a mesh needs.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl Element {
                     .ok_or_else(|| format!("the {} ends before its {name}", element.name))
             };
             let wrong = |word: &str| {
-                let word = excerpt(word, 24);
+                let word = excerpt(word, MAX_WORD_CHARS);
                 format!(
                     "{word:?} is not a number for {name} of this {}",
                     element.name

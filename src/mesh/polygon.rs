@@ -24,7 +24,7 @@ pub(super) fn strip<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
 
 /// Replaces a fan around a polygon's first corner that leaves the outline, as in a concave polygon, by ear clipping
 /// (Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975). Keeps the fan if there is no ear because
-/// the polygon crosses itself, or if it has more than 4096 corners; returns `true` in the latter case.
+/// the polygon crosses itself, or if it has more than [`MAX_CORNERS`] corners; returns `true` in the latter case.
 pub(super) fn mend_fan(fan: &mut [[u32; 3]], point: impl Fn(u32) -> DVec3) -> bool {
     let area = |[a, b, c]: [u32; 3]| {
         let a = point(a);

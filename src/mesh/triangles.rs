@@ -42,9 +42,7 @@ impl Triangles {
                 return Err(fault.to_string());
             }
         }
-        let is_in_bounds =
-            |point: &DVec3| point.is_finite() && point.abs().max_element() <= MAX_ABS_COORDINATE;
-        match points.iter().position(|point| !is_in_bounds(point)) {
+        match points.iter().position(|&point| !is_in_bounds(point)) {
             Some(wrong) => Err(out_of_bounds(wrong)),
             None => Ok(Self::of(points, faces)),
         }
@@ -148,8 +146,8 @@ impl Triangles {
             }
             let points = indices.map(&point);
             for (index, point) in indices.iter().zip(points) {
-                if !point.is_finite() || point.abs().max_element() > MAX_ABS_COORDINATE {
-                    return Err(Fault::new(out_of_bounds(index + 1)));
+                if !is_in_bounds(point) {
+                    return Err(Fault::new(out_of_bounds(*index)));
                 }
             }
             let [a, b, c] = points;
@@ -192,12 +190,19 @@ const SEPARATOR_BYTES: usize = 8;
 /// Points or faces that are hashed at once.
 const HASH_CHUNK: usize = 1024;
 
-/// Largest absolute coordinate in a scene, in world units.
-pub const MAX_ABS_COORDINATE: f64 = 1e12;
+/// Largest absolute coordinate or length in a scene, in world units, and largest absolute angle in degrees.
+pub const MAX_COORDINATE: f64 = 1e12;
 
-/// The error message for a point that is not finite or out of range.
+/// Returns whether a point is finite and in range.
+pub fn is_in_bounds(point: DVec3) -> bool {
+    point.is_finite() && point.abs().max_element() <= MAX_COORDINATE
+}
+
+/// The error message for a point that is not, by its number, counted from 0.
 fn out_of_bounds(point: usize) -> String {
-    format!("point {point} has a coordinate that is not a finite number within 1e12 of 0")
+    format!(
+        "point {point}, counted from 0, has a coordinate that is not a finite number within {MAX_COORDINATE:e} of 0"
+    )
 }
 
 /// The fault of a face that refers to a missing point; both numbers are as they are counted in the file.
@@ -342,7 +347,7 @@ mod tests {
         );
         assert_eq!(
             said(&points, &[[0, 1, 2]]),
-            "point 3 has a coordinate that is not a finite number within 1e12 of 0"
+            "point 2, counted from 0, has a coordinate that is not a finite number within 1e12 of 0"
         );
     }
 }

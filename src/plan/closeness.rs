@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Light, Mesh, Outline, PlanePiece, Scene, Shape, Triangle};
+use crate::scene::{Describe as _, Light, Mesh, Outline, PlanePiece, Scene, Shape, Triangle};
 
 /// Least height of the eye or a light above a sphere for single precision, in radii: below it, the distance to the
 /// ground straight ahead has lost its digits.
@@ -82,7 +82,7 @@ pub fn is_just_above(scene: &Scene, extent: f64) -> bool {
 /// Returns whether a point is nearer than `least` to a face of a mesh, and not in its plane.
 fn is_close_to_face(mesh: &Mesh, point: DVec3, least: f64) -> bool {
     let is_near = |&[a, b, c]: &[DVec3; 3]| {
-        let bounds = Shape::from(Triangle { a, b, c }).bounds();
+        let bounds = Triangle { a, b, c }.bounds();
         bounds.is_some_and(|bounds| is_near_box(point, bounds, least))
     };
     let mut near = mesh.world_corners().filter(is_near);

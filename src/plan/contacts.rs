@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::request::{Model, RenderRequest};
-use crate::scene::{Coincidence, List, Object, Overlap, Scene, Shape, unit};
+use crate::scene::{Coincidence, List, Object, Overlap, Scene, Shape};
 
 /// Maximum number of objects that contain lights or the eye and are kept out of the tree; if there are more, all
 /// stay in it.
@@ -16,7 +16,8 @@ const MAX_OUTSIDE_TREE: usize = 256;
 /// The same for objects that share a surface with others: more of them are found faster in the tree.
 const MAX_SHARING_OUTSIDE: usize = 32;
 
-/// Maximum number of pairs of an object and a light that are checked: ten milliseconds whenever either has changed.
+/// Number of pairs of an object and a light up to which lights in the plane of a flat object, but far from it, are
+/// found, too: ten milliseconds whenever either has changed.
 const MAX_PAIRS: usize = 1_000_000;
 
 /// Distance from a curved surface up to which a point counts as on it, in radii.
@@ -50,7 +51,8 @@ pub struct Contacts {
 /// The contacts of lights.
 #[derive(Clone, Debug, Default)]
 pub struct LightContacts {
-    /// For each light of the scene, the flat objects whose planes contain it: they cast no shadow from it.
+    /// For each light of the scene, the flat objects whose planes contain it: they cast no shadow from it. With many
+    /// objects and lights, only those near the light.
     pub held_by: Vec<Vec<usize>>,
     /// For each light, the first ball whose surface contains it: on one side that ball casts a shadow, which is
     /// decided exactly. For further balls, rounding decides.
@@ -60,21 +62,44 @@ pub struct LightContacts {
 }
 
 impl LightContacts {
-    /// Finds the contacts of lights at these positions; none if that would take too long.
+    /// Finds the contacts of lights at these positions.
     pub fn new(objects: &List<Object>, lights: &[DVec3]) -> Self {
-        if objects.len() * lights.len() > MAX_PAIRS {
-            return Self::default();
-        }
-        let held_by = planes_through(objects, lights);
-        let touches = |(light, held_by): (&DVec3, &Vec<usize>)| {
-            !held_by.is_empty() || is_on_any(objects, *light)
+        let mut contacts = Self {
+            held_by: vec![Vec::new(); lights.len()],
+            on_balls: vec![None; lights.len()],
+            touching: vec![false; lights.len()],
         };
-        Self {
-            touching: lights.iter().zip(&held_by).map(touches).collect(),
-            on_balls: balls_at(objects, lights),
-            held_by,
+        let are_few = objects.len() * lights.len() <= MAX_PAIRS;
+        let mut lights: Vec<_> = lights.iter().copied().enumerate().collect();
+        lights.sort_by(|(_, one), (_, other)| one.x.total_cmp(&other.x));
+        for (index, Object { shape, .. }) in objects.visible() {
+            let piece = shape.plane_piece();
+            let bounds = shape.bounds().filter(|_| piece.is_none() || !are_few);
+            for &(light, at) in bounds.map_or(&lights[..], |bounds| beside(bounds, &lights)) {
+                if let Some(piece) = &piece {
+                    if piece.height(at) == 0.0 {
+                        contacts.held_by[light].push(index);
+                        contacts.touching[light] = true;
+                    }
+                } else {
+                    let height = shape.height_per_radius(at);
+                    contacts.touching[light] |= height < NEAR_CURVED;
+                    if height <= ON_CURVED {
+                        contacts.on_balls[light].get_or_insert(index);
+                    }
+                }
+            }
         }
+        contacts
     }
+}
+
+/// Returns the lights, sorted by x, that are not to the left or to the right of something with these bounds.
+fn beside((low, high): (DVec3, DVec3), lights: &[(usize, DVec3)]) -> &[(usize, DVec3)] {
+    let margin = NEAR_CURVED * (high - low).max_element();
+    let start = lights.partition_point(|(_, light)| light.x < low.x - margin);
+    let lights = &lights[start..];
+    &lights[..lights.partition_point(|(_, light)| light.x <= high.x + margin)]
 }
 
 /// An object that shares its surface with earlier ones.
@@ -158,7 +183,7 @@ impl Contacts {
     /// Finds what the eye is on, in one pass, as there may be many objects.
     fn find_eye_contacts(&mut self, scene: &Scene, is_parallel: bool) {
         let eye = scene.camera.position;
-        let direction = unit(scene.camera.look_at).unwrap_or_default();
+        let direction = scene.camera.forward();
         for (index, Object { shape, .. }) in scene.objects.visible() {
             if let Some(piece) = shape.plane_piece() {
                 let holds_eye = piece.height(eye) == 0.0;
@@ -200,49 +225,13 @@ impl Contacts {
     }
 }
 
-/// Returns whether a point may be on a curved object.
-fn is_on_any(objects: &List<Object>, point: DVec3) -> bool {
-    objects
-        .visible()
-        .any(|(_, object)| object.shape.height_per_radius(point) < NEAR_CURVED)
-}
-
-/// Returns for each point the visible flat objects whose planes contain it.
-fn planes_through(objects: &List<Object>, points: &[DVec3]) -> Vec<Vec<usize>> {
-    let mut through = vec![Vec::new(); points.len()];
-    for (index, object) in objects.visible() {
-        let Some(piece) = object.shape.plane_piece() else {
-            continue;
-        };
-        for (point, through) in points.iter().zip(&mut through) {
-            if piece.height(*point) == 0.0 {
-                through.push(index);
-            }
-        }
-    }
-    through
-}
-
-/// Returns for each point the first visible ball on whose surface it is.
-fn balls_at(objects: &List<Object>, points: &[DVec3]) -> Vec<Option<usize>> {
-    let is_ball = |object: &Object| matches!(object.shape, Shape::Sphere(_));
-    let visible = objects.visible();
-    let balls: Vec<_> = visible.filter(|(_, object)| is_ball(object)).collect();
-    let at = |point: &DVec3| {
-        let holds = |ball: &Object| ball.shape.height_per_radius(*point) <= ON_CURVED;
-        let mut balls = balls.iter();
-        balls.find_map(|(index, ball)| holds(ball).then_some(*index))
-    };
-    points.iter().map(at).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::Plan;
     use super::super::geometry::PlanCache;
     use super::*;
     use crate::primitive::Kind;
-    use crate::scene::{Accelerator, Sampling, Triangle};
+    use crate::scene::{Accelerator, Disc, Sampling, Sphere, Triangle};
 
     #[test]
     fn others_are_found_by_their_numbers_in_whatever_order_they_are() {
@@ -254,6 +243,36 @@ mod tests {
         }
         assert!(others.listed().eq([3, 7]) && others.are_in_tree());
         assert!(!RankedObjects::new(vec![1..2, 5..6], 20).are_in_tree());
+    }
+
+    #[test]
+    fn lights_are_on_things_among_any_number_of_others() {
+        let at = |x: f64| DVec3::new(x, 0.0, 0.0);
+        let ball = |index: usize| Sphere {
+            center: at(3.0 * index as f64),
+            radius: 1.0,
+        };
+        let mut objects: List<Object> = (0..100)
+            .map(|index| Object::new(format!("Ball {index}"), "plane", ball(index)))
+            .collect();
+        let disc = Disc {
+            center: at(1.5),
+            normal: DVec3::X,
+            radius: 0.25,
+        };
+        objects.push(Object::new("Disc", "plane", disc));
+        // On a ball, beside it, on the disc, and in the disc's plane.
+        let mut lights = vec![at(22.0), at(22.4), at(1.5), DVec3::new(1.5, 9.0, 0.0)];
+        for are_many in [false, true] {
+            if are_many {
+                let more = MAX_PAIRS / objects.len() - lights.len() + 1;
+                lights.extend((0..more).map(|index| DVec3::new(index as f64, 5.0, 0.0)));
+            }
+            let found = LightContacts::new(&objects, &lights);
+            assert_eq!(found.on_balls[..4], [Some(7), None, None, None]);
+            assert_eq!(found.touching[..4], [true, false, true, !are_many]);
+            assert_eq!(found.held_by[2], [100]);
+        }
     }
 
     #[test]

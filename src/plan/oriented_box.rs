@@ -52,7 +52,7 @@ impl<R: Real> OrientedBox<R> {
         let half = high * 0.5 - low * 0.5;
         let aligned = bounds.high.to_dvec3() * 0.5 - bounds.low.to_dvec3() * 0.5;
         (surface(half) < WORTH_TESTING * surface(aligned)).then(|| Self {
-            centre: Vec3::from_dvec3(axes * (low * 0.5 + high * 0.5)),
+            centre: Vec3::from_dvec3(axes * low.midpoint(high)),
             axes: [axes.x_axis, axes.y_axis, axes.z_axis].map(Vec3::from_dvec3),
             half: half.to_array().map(R::from_f64),
         })

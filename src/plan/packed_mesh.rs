@@ -105,7 +105,7 @@ fn points_and_middle(source: &Triangles, linear: DMat3) -> (Vec<DVec3>, DVec3) {
     let named = source.faces().as_flattened().iter();
     let corners = named.map(|&corner| points[corner as usize]);
     let (low, high) = around(corners.map(|corner| (corner, corner))).unwrap_or_default();
-    let middle = low * 0.5 + high * 0.5;
+    let middle = low.midpoint(high);
     for point in &mut points {
         *point -= middle;
     }

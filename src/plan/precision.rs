@@ -4,7 +4,7 @@ use super::closeness::{
     has_layers, has_twins, is_almost_on, is_at_border, is_just_above, visible_planes,
 };
 use super::request::{Model, RenderRequest};
-use crate::scene::{Object, Precision, Projection, Scene, unit};
+use crate::scene::{Object, Precision, Projection, Scene};
 
 /// Largest ratio of a sphere's distance to its radius in single precision: the perpendicular
 /// discriminant is then off by at most 3.2·u·ρ ≈ 1/1000 of the radius.
@@ -116,7 +116,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
     let Some((low, high)) = scene.surroundings() else {
         return false;
     };
-    let centre = (low + high) * 0.5;
+    let centre = low.midpoint(high);
     let extent = (high - low).length().max((eye - centre).length());
     if extent < MIN_EXTENT || is_just_above(scene, extent) || has_twins(scene, extent) {
         return true;
@@ -152,10 +152,7 @@ pub fn needs_double(scene: &Scene, request: &RenderRequest) -> bool {
 
 /// The distance of the farthest plane that the camera looks at, on which shadows would show.
 fn farthest_wall(scene: &Scene) -> f64 {
-    let (eye, direction) = (
-        scene.camera.position,
-        unit(scene.camera.look_at).unwrap_or_default(),
-    );
+    let (eye, direction) = (scene.camera.position, scene.camera.forward());
     let facing =
         visible_planes(scene).filter(|piece| direction.dot(piece.normal).abs() > MIN_FACING_COSINE);
     let distances = facing.map(|piece| -piece.height(eye) / direction.dot(piece.normal));
@@ -165,9 +162,9 @@ fn farthest_wall(scene: &Scene) -> f64 {
 /// Returns whether parallel rays come from too far away.
 fn is_far_in_parallel(scene: &Scene) -> bool {
     let camera = &scene.camera;
-    let direction = unit(camera.look_at).unwrap_or_default();
+    let direction = camera.forward();
     let distance = |object: &Object| match object.shape.bounds() {
-        Some((low, high)) => (low * 0.5 + high * 0.5 - camera.position).length(),
+        Some((low, high)) => low.midpoint(high).distance(camera.position),
         // Where the ray through the middle of the picture hits it.
         None => object.shape.plane_piece().map_or(0.0, |piece| {
             let towards = direction.dot(piece.normal);

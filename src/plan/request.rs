@@ -53,7 +53,7 @@ impl RenderRequest {
         Self::of(scene, scene.render.width, scene.render.height)
     }
 
-    /// The same picture in another size.
+    /// The picture of the scene's own settings, in this size.
     pub fn of(scene: &Scene, width: u32, height: u32) -> Self {
         let render = &scene.render;
         Self {

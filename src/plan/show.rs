@@ -69,10 +69,7 @@ fn depth_range(scene: &Scene, projection: Projection) -> (f64, f64) {
     let (middle, radius) = (low.midpoint(high), low.distance(high) / 2.0);
     let distance = match projection {
         Projection::Perspective => position.distance(middle),
-        Projection::Orthographic => {
-            let forward = scene.camera.basis().map_or(middle, |basis| -basis.z_axis);
-            (middle - position).dot(forward)
-        }
+        Projection::Orthographic => (middle - position).dot(scene.camera.forward()),
     };
     let nearest = (distance - radius).max(0.0);
     (

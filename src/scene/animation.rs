@@ -3,13 +3,13 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use glam::DVec3;
 
 use super::camera::{Camera, Projection};
+use super::notation;
 pub use super::notation::vector::Value;
-use super::notation::{self, vector::NumberOrPoint};
 use super::orientation::Orientation;
 
 /// Valid frame rates, in frames per second.
@@ -367,19 +367,4 @@ impl Take {
 
 fn nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
-}
-
-impl Serialize for Value {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Number(number) => notation::number::serialize(number, serializer),
-            Self::Point(point) => notation::vector::serialize(point, serializer),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Value {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(NumberOrPoint("a number or a point such as (1, 2, 3)"))
-    }
 }

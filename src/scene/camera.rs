@@ -7,6 +7,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::direction::unit;
 use super::notation;
 
+/// Least height of an orthographic picture that the editor sets, in world units: the limit of zooming in.
+pub const MIN_ORTHOGRAPHIC_HEIGHT: f64 = 1e-6;
+
 /// Position, orientation and projection of the camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -108,15 +111,20 @@ impl Camera {
         })
     }
 
+    /// The viewing direction as a unit vector; zero for a camera without one.
+    pub fn forward(&self) -> DVec3 {
+        unit(self.look_at).unwrap_or_default()
+    }
+
     /// Returns the camera moved so that all of a box, given by two corners, is in the picture of this aspect ratio
     /// (width over height). The viewing direction is unchanged.
     #[must_use]
     pub fn around(&self, aspect: f64, (low, high): (DVec3, DVec3)) -> Self {
         let (middle, radius) = (
-            low * 0.5 + high * 0.5,
+            low.midpoint(high),
             (high - low).length() * 0.5 * FRAMING_MARGIN,
         );
-        let forward = self.look_at.normalize_or_zero();
+        let forward = self.forward();
         let mut next = self.clone();
         // The shorter side of the picture, in picture heights.
         let side = aspect.min(1.0);

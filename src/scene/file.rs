@@ -21,6 +21,7 @@ pub const DEMO_TEXT: &str = include_str!("../../scenes/demo.ron");
 
 /// Largest nesting depth of brackets; a scene needs five.
 const MAX_DEPTH: usize = 32;
+
 /// A scene and the comment header of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {

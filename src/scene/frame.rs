@@ -30,13 +30,13 @@ impl CoordinateFrame {
     /// is the median of the centres of objects and of the lights.
     pub fn of(scene: &Scene) -> Option<Self> {
         let (low, high) = scene.objects_bounds()?;
-        let (middle, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
+        let (middle, half) = (low.midpoint(high), high * 0.5 - low * 0.5);
         let half = half.max_element();
         let visible = scene.visible_objects();
         let mut boxes: Vec<_> = visible.filter_map(|object| object.shape.bounds()).collect();
         let step = boxes.len().div_ceil(MAX_SAMPLED);
         boxes = boxes.into_iter().step_by(step).collect();
-        let positions = boxes.iter().map(|(low, high)| *low * 0.5 + *high * 0.5);
+        let positions = boxes.iter().map(|(low, high)| low.midpoint(*high));
         let lights = scene.lights.iter().take(MAX_SAMPLED);
         let positions: Vec<_> = positions
             .chain(lights.map(|light| light.position))
@@ -79,7 +79,7 @@ mod tests {
         let mut scene = Scene::demo();
         let demo = CoordinateFrame::of(&scene).expect("it ends");
         let (low, high) = scene.objects_bounds().expect("it ends");
-        assert_eq!(demo.centre, low * 0.5 + high * 0.5);
+        assert_eq!(demo.centre, low.midpoint(high));
         assert_eq!(demo.extent, demo.farthest);
         let size = (high - low).length();
         for center in [DVec3::X * 1e9, DVec3::new(-1e12, 3e5, 7.0)] {

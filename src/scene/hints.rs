@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::camera::{Camera, Projection};
 use super::coincidence::{Coincidence, Overlap, coincidences};
-use super::direction::unit;
 use super::frame::CoordinateFrame;
 use super::shape::{Outline, Shape};
 use super::whole::Scene;
@@ -121,8 +120,7 @@ fn add_coincident(scene: &Scene, centre: DVec3, hints: &mut Vec<Hint>) {
             extent,
         } = found;
         let looks_alike = scene.look_alike(later, earlier);
-        let is_hidden = matches!(extent, Overlap::Standing | Overlap::Touching);
-        if is_hidden || (extent == Overlap::Faces && looks_alike) {
+        if extent.is_hidden() || (extent == Overlap::Faces && looks_alike) {
             continue; // Which of them is in front makes no visible difference.
         }
         if last.replace(later) == Some(later) {
@@ -186,7 +184,7 @@ fn is_edge_on(shape: &Shape, camera: &Camera, extent: f64) -> bool {
     match camera.projection {
         Projection::Perspective => plane.height(camera.position).abs() < EDGE_ON * extent,
         Projection::Orthographic => {
-            let direction = unit(camera.look_at).unwrap_or_default();
+            let direction = camera.forward();
             direction.dot(plane.normal).abs() < EDGE_ON
         }
     }

@@ -135,7 +135,7 @@ impl Scene {
         let Some((low, high)) = self.objects_bounds() else {
             return;
         };
-        let (middle, size) = (low * 0.5 + high * 0.5, (high - low).length());
+        let (middle, size) = (low.midpoint(high), (high - low).length());
         let view_side = DVec3::new(0.35, 0.3, 1.0).normalize();
         self.camera = Camera {
             position: middle + view_side * size * 1.3,

@@ -2,7 +2,6 @@
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
-use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -123,7 +122,7 @@ impl Scene {
         if self.animation.tracks.is_empty() {
             return;
         }
-        let animation = Arc::make_mut(&mut self.animation);
+        let animation = self.animation_mut();
         animation.forget(&removed.map(|object| Owner::Object(&object.name)).collect());
         let turns = Target::ObjectRotation(object.name.clone());
         animation.tracks.retain(|track| track.target != turns);
@@ -180,7 +179,7 @@ impl Scene {
         let own = Owner::Object(&name);
         let is_moved = |track: &Track| track.target.owner() == Some(own);
         if self.animation.tracks.iter().any(is_moved) {
-            Arc::make_mut(&mut self.animation).forget(&HashSet::from([own]));
+            self.animation_mut().forget(&HashSet::from([own]));
         }
         new_indices
     }
@@ -196,6 +195,7 @@ fn outer_corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::Arc;
 
     use super::*;
     use crate::scene::animation::Value;

@@ -34,6 +34,19 @@ impl KeyId {
 }
 
 impl Animation {
+    /// Yields what the tracks animate, in their order.
+    pub fn targets(&self) -> impl Iterator<Item = &Target> {
+        self.tracks.iter().map(|track| &track.target)
+    }
+
+    /// Returns the targets that have a track here, but none in `next`.
+    pub fn targets_lost_in(&self, next: &Self) -> Vec<&Target> {
+        let kept: HashSet<&Target> = next.targets().collect();
+        let mut lost: Vec<&Target> = self.targets().collect();
+        lost.retain(|target| !kept.contains(target));
+        lost
+    }
+
     fn is_same_time(&self, a: f64, b: f64) -> bool {
         (a - b).abs() < SAME_TIME_IN_FRAMES / self.frames_per_second
     }
@@ -105,12 +118,12 @@ impl Animation {
     }
 
     /// Returns the time of a key, and interpolation and easing after it; `None` if there is no such key.
-    pub fn time_and_pace_of(&self, place: KeyId) -> Option<(f64, Pace)> {
-        match place.track {
-            None => self.keys.get(place.index).map(time_and_pace),
+    pub fn time_and_pace_of(&self, id: KeyId) -> Option<(f64, Pace)> {
+        match id.track {
+            None => self.keys.get(id.index).map(time_and_pace),
             Some(track) => {
                 let keys = &self.tracks.get(track)?.keys;
-                keys.get(place.index).map(time_and_pace)
+                keys.get(id.index).map(time_and_pace)
             }
         }
     }
@@ -125,21 +138,19 @@ impl Animation {
     }
 
     /// Returns the animation without these keys. Tracks that are empty then are removed.
-    pub fn without_keys(&self, places: &Keys) -> Self {
+    pub fn without_keys(&self, ids: &Keys) -> Self {
         let mut animation = self.clone();
-        retain_others(&mut animation.keys, None, places);
+        retain_others(&mut animation.keys, None, ids);
         for (track, row) in animation.tracks.iter_mut().enumerate() {
-            retain_others(&mut row.keys, Some(track), places);
+            retain_others(&mut row.keys, Some(track), ids);
         }
         animation.tracks.retain(|track| !track.keys.is_empty());
         animation
     }
 
     /// Returns the times of the first and the last of these keys, in seconds from the start.
-    pub fn span_of(&self, places: &Keys) -> Option<(f64, f64)> {
-        let times = places
-            .iter()
-            .filter_map(|place| self.time_and_pace_of(*place));
+    pub fn span_of(&self, ids: &Keys) -> Option<(f64, f64)> {
+        let times = ids.iter().filter_map(|id| self.time_and_pace_of(*id));
         let spans = times.map(|(time, _)| (time, time));
         spans.reduce(|(first, last), (time, _)| (time.min(first), time.max(last)))
     }
@@ -147,18 +158,18 @@ impl Animation {
     /// Returns the animation with these keys, or copies of them, moved by `shift` seconds, and their new ids.
     /// The shift is limited so that none is before the start or after [`MAX_SECONDS`]. Each moved key replaces the
     /// one it lands on.
-    pub fn with_moved(&self, places: &Keys, shift: f64, are_copies: bool) -> (Self, Keys) {
-        let (first, last) = self.span_of(places).unwrap_or((0.0, MAX_SECONDS));
+    pub fn with_moved(&self, ids: &Keys, shift: f64, are_copies: bool) -> (Self, Keys) {
+        let (first, last) = self.span_of(ids).unwrap_or((0.0, MAX_SECONDS));
         let movement = (shift.clamp(-first, MAX_SECONDS - last), are_copies);
         let (mut animation, mut new) = (self.clone(), Keys::new());
         let mut record = |track, indices: Vec<usize>| {
-            let place = |index| KeyId { track, index };
-            new.extend(indices.into_iter().map(place));
+            let id = |index| KeyId { track, index };
+            new.extend(indices.into_iter().map(id));
         };
-        let moved = indices(places, None);
+        let moved = indices(ids, None);
         record(None, move_keys(self, &mut animation.keys, &moved, movement));
         for (track, row) in animation.tracks.iter_mut().enumerate() {
-            let moved = indices(places, Some(track));
+            let moved = indices(ids, Some(track));
             record(
                 Some(track),
                 move_keys(self, &mut row.keys, &moved, movement),
@@ -168,9 +179,9 @@ impl Animation {
     }
 
     /// Returns the animation with `change` applied to the camera keys among these.
-    pub fn with_each(&self, places: &Keys, change: impl Fn(&mut Key<Camera>)) -> Self {
+    pub fn with_each(&self, ids: &Keys, change: impl Fn(&mut Key<Camera>)) -> Self {
         let mut animation = self.clone();
-        for index in indices(places, None) {
+        for index in indices(ids, None) {
             if let Some(key) = animation.keys.get_mut(index) {
                 change(key);
             }
@@ -179,13 +190,11 @@ impl Animation {
     }
 
     /// Returns the animation with `change` applied to interpolation and easing of these keys.
-    pub fn with_pace(&self, places: &Keys, change: impl Fn(&mut Pace)) -> Self {
-        let mut animation = self.with_each(places, |key| set_pace(key, &change));
-        for place in places {
-            let track = place
-                .track
-                .and_then(|track| animation.tracks.get_mut(track));
-            if let Some(key) = track.and_then(|track| track.keys.get_mut(place.index)) {
+    pub fn with_pace(&self, ids: &Keys, change: impl Fn(&mut Pace)) -> Self {
+        let mut animation = self.with_each(ids, |key| set_pace(key, &change));
+        for id in ids {
+            let track = id.track.and_then(|track| animation.tracks.get_mut(track));
+            if let Some(key) = track.and_then(|track| track.keys.get_mut(id.index)) {
                 set_pace(key, &change);
             }
         }
@@ -224,17 +233,17 @@ impl Animation {
         time: f64,
     ) -> Self {
         let values: Vec<_> = values.into_iter().collect();
-        let places = self.track_indices(values.iter().map(|(target, _)| *target));
+        let ids = self.track_indices(values.iter().map(|(target, _)| *target));
         let mut animation = self.clone();
         for (target, value) in values {
-            let place = places.get(target).copied().unwrap_or_else(|| {
+            let id = ids.get(target).copied().unwrap_or_else(|| {
                 animation.tracks.push(Track {
                     target: target.clone(),
                     keys: Vec::new(),
                 });
                 animation.tracks.len() - 1
             });
-            animation.put_value(place, (time, value));
+            animation.put_value(id, (time, value));
         }
         animation
     }
@@ -328,19 +337,19 @@ fn set_pace<T>(key: &mut Key<T>, change: &impl Fn(&mut Pace)) {
     (key.interpolation, key.easing) = pace;
 }
 
-/// Returns the indices of the keys in `places` that belong to one track, in order.
-fn indices(places: &Keys, track: Option<usize>) -> Vec<usize> {
-    let place = |index| KeyId { track, index };
-    let own = places.range(place(0)..=place(usize::MAX));
-    own.map(|place| place.index).collect()
+/// Returns the indices of the keys in `ids` that belong to one track, in order.
+fn indices(ids: &Keys, track: Option<usize>) -> Vec<usize> {
+    let id = |index| KeyId { track, index };
+    let own = ids.range(id(0)..=id(usize::MAX));
+    own.map(|id| id.index).collect()
 }
 
-fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, places: &Keys) {
+fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, ids: &Keys) {
     let mut index = 0;
     keys.retain(|_| {
-        let place = KeyId { track, index };
+        let id = KeyId { track, index };
         index += 1;
-        !places.contains(&place)
+        !ids.contains(&id)
     });
 }
 

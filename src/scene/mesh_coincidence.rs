@@ -2,18 +2,18 @@
 
 use std::cell::OnceCell;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::list::List;
 use super::object::Object;
-use super::shape::{Describe as _, Mesh, Outline, PlanePiece, Shape, Triangle};
-use crate::mesh::are_closed;
+use super::shape::{Describe as _, Outline, PlanePiece, Shape, Triangle};
+use crate::mesh::{Triangles, are_closed};
 
 /// Largest number of faces that are compared with their surroundings, summed over all pairs of objects.
 const MAX_FACES: usize = 200_000;
 
-/// Largest number of pairs of objects whose bounding boxes are compared, and of pairs of faces: takes some ten
-/// milliseconds.
+/// Largest number of pairs of objects whose bounding boxes are compared, the same of a mesh and an infinite plane, and
+/// of pairs of faces: each takes some ten milliseconds.
 const MAX_BOXES: usize = 4_000_000;
 const MAX_PAIRS: usize = 2_000_000;
 
@@ -52,6 +52,13 @@ pub enum Overlap {
     Touching,
 }
 
+impl Overlap {
+    /// Returns whether the shared surface is seen only from inside the solids, or not at all.
+    pub fn is_hidden(self) -> bool {
+        matches!(self, Self::Standing | Self::Touching)
+    }
+}
+
 /// Finds the visible meshes that share a surface with other objects. Coordinates are taken relative to `centre`.
 pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coincidence> {
     let planes = objects
@@ -71,13 +78,13 @@ pub fn mesh_coincidences(objects: &List<Object>, centre: DVec3) -> Vec<Coinciden
             extent,
         });
     };
-    let mut corners = MAX_CORNERS;
+    let (mut corners, mut placed) = (MAX_CORNERS, MAX_BOXES);
     for one in &bounded {
-        let Shape::Mesh(mesh) = one.shape else {
+        let Some(mesh) = PlacedMesh::new(one.shape, centre) else {
             continue;
         };
-        for (index, plane) in &planes {
-            if let Some(extent) = on_plane(mesh, plane, (centre, &mut corners)) {
+        for (index, plane) in planes.iter().take_while(|_| try_spend(&mut placed)) {
+            if let Some(extent) = mesh.on_plane(plane, &mut corners) {
                 add(one, *index, extent);
             }
         }
@@ -201,55 +208,69 @@ pub fn boxes_overlap(one: (DVec3, DVec3), other: (DVec3, DVec3)) -> bool {
     one.0.cmple(other.1).all() && other.0.cmple(one.1).all()
 }
 
-/// Returns how a mesh coincides with an infinite plane; `None` if no face is in the plane, or if the budget of
-/// corners in `budget` does not suffice.
-fn on_plane(
-    mesh: &Mesh,
-    plane: &PlanePiece,
-    (centre, budget): (DVec3, &mut usize),
-) -> Option<Overlap> {
-    let triangles = mesh.source.triangles();
-    let transform = mesh.transform();
-    let height = |point: DVec3| {
-        plane
-            .normal
-            .dot(transform.transform_point3(point) - plane.point)
-    };
-    let (low, high) = triangles.bounds()?;
-    let corners = (0..8).map(|corner| {
-        let side = [0, 1, 2].map(|axis| f64::from(corner >> axis & 1));
-        transform.transform_point3(low + (high - low) * DVec3::from(side))
-    });
-    let reach = corners.map(|corner| (corner - centre).abs().max_element());
-    let tolerance = plane.plane_tolerance(centre, reach.fold(0.0, f64::max));
-    // Extent of the box to each side of its middle, along the plane's normal.
-    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
-    let across = (transform.matrix3.transpose() * plane.normal)
-        .abs()
-        .dot(half);
-    if height(middle).abs() > across + tolerance {
-        return None;
+/// A mesh that is compared with many infinite planes.
+struct PlacedMesh<'a> {
+    triangles: &'a Triangles,
+    transform: DAffine3,
+    centre: DVec3,
+    /// Largest coordinate of its bounding box relative to the centre.
+    reach: f64,
+}
+
+impl<'a> PlacedMesh<'a> {
+    fn new(shape: &'a Shape, centre: DVec3) -> Option<Self> {
+        let Shape::Mesh(mesh) = shape else {
+            return None;
+        };
+        let (low, high) = mesh.bounds()?;
+        let reach = (low - centre).abs().max((high - centre).abs());
+        Some(Self {
+            triangles: mesh.source.triangles(),
+            transform: mesh.transform(),
+            centre,
+            reach: reach.max_element(),
+        })
     }
-    *budget = budget.checked_sub(3 * triangles.faces().len())?;
-    let heights: Vec<f64> = triangles
-        .points()
-        .iter()
-        .map(|&point| height(point))
-        .collect();
-    let is_on = |corner: &u32| heights[*corner as usize].abs() <= tolerance;
-    let is_in = |face: &[u32; 3]| face.iter().all(is_on);
-    let faces = triangles.faces().iter().zip(triangles.corners());
-    let mut in_plane = faces.filter(|(face, _)| is_in(face));
-    in_plane.find(|(_, corners)| PlanePiece::between(*corners).is_some())?;
-    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let is_on_one_side = -tolerance <= lowest || highest <= tolerance;
-    let is_flat = highest - lowest <= 2.0 * tolerance;
-    Some(if is_on_one_side && !is_flat {
-        Overlap::Standing
-    } else {
-        Overlap::Faces
-    })
+
+    /// Returns how the mesh coincides with a plane; `None` if no face is in the plane, or if the budget of corners
+    /// does not suffice.
+    fn on_plane(&self, plane: &PlanePiece, budget: &mut usize) -> Option<Overlap> {
+        let (triangles, transform) = (self.triangles, &self.transform);
+        let height = |point: DVec3| {
+            let point = transform.transform_point3(point);
+            plane.normal.dot(point - plane.point)
+        };
+        let tolerance = plane.plane_tolerance(self.centre, self.reach);
+        let (low, high) = triangles.bounds()?;
+        // Extent of the box to each side of its middle, along the plane's normal.
+        let (middle, half) = (low.midpoint(high), (high - low) * 0.5);
+        let across = (transform.matrix3.transpose() * plane.normal)
+            .abs()
+            .dot(half);
+        if height(middle).abs() > across + tolerance {
+            return None;
+        }
+        *budget = budget.checked_sub(3 * triangles.faces().len())?;
+        let heights: Vec<f64> = triangles
+            .points()
+            .iter()
+            .map(|&point| height(point))
+            .collect();
+        let is_on = |corner: &u32| heights[*corner as usize].abs() <= tolerance;
+        let is_in = |face: &[u32; 3]| face.iter().all(is_on);
+        let faces = triangles.faces().iter().zip(triangles.corners());
+        let mut in_plane = faces.filter(|(face, _)| is_in(face));
+        in_plane.find(|(_, corners)| PlanePiece::between(*corners).is_some())?;
+        let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_on_one_side = -tolerance <= lowest || highest <= tolerance;
+        let is_flat = highest - lowest <= 2.0 * tolerance;
+        Some(if is_on_one_side && !is_flat {
+            Overlap::Standing
+        } else {
+            Overlap::Faces
+        })
+    }
 }
 
 /// Remaining budget of a search.
@@ -328,119 +349,4 @@ impl Search {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::Triangles;
-    use crate::scene::{Disc, Plane};
-
-    /// Returns a sheet of `squares` × `squares` squares, `width` units wide, centred at `at` and turned by
-    /// `rotation` in degrees.
-    fn sheet(squares: u32, width: f64, at: DVec3, rotation: DVec3) -> Mesh {
-        let side = squares + 1;
-        let place = |index: u32| (f64::from(index) / f64::from(squares) - 0.5) * width;
-        let points = (0..side * side).map(|n| DVec3::new(place(n % side), 0.0, place(n / side)));
-        let faces = (0..squares * squares).flat_map(|n| {
-            let corner = n / squares * side + n % squares;
-            [
-                [corner, corner + 1, corner + side],
-                [corner + 1, corner + side + 1, corner + side],
-            ]
-        });
-        let triangles = Triangles::new(points.collect(), faces.collect()).expect("in range");
-        Mesh {
-            position: at,
-            rotation,
-            ..Mesh::of(triangles)
-        }
-    }
-
-    fn found(one: impl Into<Shape>, other: impl Into<Shape>) -> Option<Overlap> {
-        let objects = [
-            Object::new("one", "red", one.into()),
-            Object::new("other", "blue", other.into()),
-        ];
-        let found = mesh_coincidences(&objects.into_iter().collect(), DVec3::ZERO);
-        assert!(found.len() <= 1);
-        found.first().map(|found| {
-            assert_eq!((found.earlier, found.later), (0, 1));
-            found.extent
-        })
-    }
-
-    fn floor() -> Plane {
-        Plane {
-            point: DVec3::ZERO,
-            normal: DVec3::Y,
-        }
-    }
-
-    #[test]
-    fn a_sheet_lies_in_a_floor_and_a_box_stands_on_it() {
-        let flat = sheet(7, 50.0, DVec3::ZERO, DVec3::ZERO);
-        assert_eq!(found(flat.clone(), floor()), Some(Overlap::Faces));
-        assert_eq!(found(floor(), flat.clone()), Some(Overlap::Faces));
-        let higher = sheet(7, 50.0, DVec3::Y * 1e-3, DVec3::ZERO);
-        assert_eq!(found(higher, floor()), None);
-        let turned = sheet(7, 50.0, DVec3::ZERO, DVec3::X);
-        assert_eq!(found(turned, floor()), None);
-        let cube = |y: f64| Mesh {
-            position: DVec3::Y * y,
-            ..Mesh::of((crate::mesh::SOLIDS[0].make)(2.0))
-        };
-        let half = cube(0.0).bounds().map_or(0.0, |(_, high)| high.y);
-        assert_eq!(found(cube(half), floor()), Some(Overlap::Standing));
-        assert_eq!(found(cube(-half), floor()), Some(Overlap::Standing));
-        assert_eq!(found(cube(0.3 * half), floor()), None);
-        assert_eq!(found(cube(9.0), floor()), None);
-    }
-
-    #[test]
-    fn solids_that_stand_on_each_other_touch_and_one_in_a_side_of_another_lies_there() {
-        let cube = |x: f64, y: f64| Mesh {
-            position: DVec3::new(x, y, 0.0),
-            ..Mesh::of((crate::mesh::SOLIDS[0].make)(2.0))
-        };
-        let side = cube(0.0, 0.0)
-            .bounds()
-            .map_or(0.0, |(low, high)| (high - low).y);
-        let lower = cube(0.0, 0.0);
-        assert_eq!(
-            found(lower.clone(), cube(0.3, side)),
-            Some(Overlap::Touching)
-        );
-        // Their front faces are in one plane.
-        assert_eq!(found(lower.clone(), cube(0.3, 0.3)), Some(Overlap::Faces));
-        let mirrored = Mesh {
-            scale: DVec3::new(1.0, -1.0, 1.0),
-            ..cube(0.3, side)
-        };
-        assert_eq!(found(lower.clone(), mirrored), Some(Overlap::Touching));
-        // A sheet is no solid.
-        let lid = sheet(1, 1.0, DVec3::Y * side / 2.0, DVec3::X * 180.0);
-        assert_eq!(found(lower, lid), Some(Overlap::Faces));
-    }
-
-    #[test]
-    fn sheets_that_share_an_area_coincide_however_they_are_cut_and_turned() {
-        let turned = DVec3::new(11.0, 23.0, 5.0);
-        let at = DVec3::new(1.0, 3.0, 2.0);
-        let sheets =
-            |other: DVec3| found(sheet(7, 50.0, at, turned), sheet(11, 30.0, other, turned));
-        assert_eq!(sheets(at), Some(Overlap::Faces));
-        let one = sheet(7, 50.0, at, turned);
-        let (across, along) = (
-            one.linear_transform() * DVec3::Y,
-            one.linear_transform() * DVec3::X,
-        );
-        assert_eq!(sheets(at + across * 1e-3), None);
-        assert_eq!(sheets(at + along * 39.9), Some(Overlap::Faces));
-        assert_eq!(sheets(at + along * 40.1), None, "beside it");
-        let disc = |center: DVec3| Disc {
-            center,
-            normal: across,
-            radius: 1.0,
-        };
-        assert_eq!(found(disc(at), one.clone()), Some(Overlap::Faces));
-        assert_eq!(found(disc(at + across), one), None);
-    }
-}
+mod tests;

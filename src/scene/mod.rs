@@ -75,7 +75,9 @@ pub use animation::{
     SAME_TIME, Sample, Take, Target, Track, Value,
 };
 pub use aspect::Aspect;
-pub use camera::{Bookmark, Camera, Framing, Projection, field_of_view_radians};
+pub use camera::{
+    Bookmark, Camera, Framing, MIN_ORTHOGRAPHIC_HEIGHT, Projection, field_of_view_radians,
+};
 pub use check::{MAX_COORDINATE, MAX_FACTOR, PROJECTION_DISTANCES, Problem, check, check_edit};
 pub use coincidence::{Coincidence, Overlap, coincidences};
 pub use differences::differences;
@@ -97,7 +99,7 @@ pub use names::{Names, without_number};
 pub(crate) use notation::method;
 pub use notation::{format_number, parse_vec3};
 pub use object::{Light, LightObj, Object, default_intensity};
-pub use orientation::Orientation;
+pub use orientation::{Orientation, wrapped_angle};
 pub use recovery::{Leftover, Recovery};
 pub use render::{Chosen, MAX_REFLECTIONS, MAX_SIDE, Render, Setting, VisitSetting};
 pub use shape::{

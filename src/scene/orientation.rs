@@ -9,6 +9,11 @@ use super::camera::Camera;
 /// Largest pitch in radians: short of straight up, where yaw would be undefined.
 const MAX_PITCH: f64 = 89.9 * PI / 180.0;
 
+/// Returns the equivalent angle, in radians, from -π up to π.
+pub fn wrapped_angle(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
 /// The orientation of a camera as angles in radians: R = Yaw · Pitch · Roll applied to a camera that looks along -z
 /// with +y up, with the matrices of the original program (roll first).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,7 +86,7 @@ impl Orientation {
     #[must_use]
     pub fn turned(self, yaw: f64, pitch: f64) -> Self {
         Self {
-            yaw: (self.yaw + yaw + PI).rem_euclid(TAU) - PI,
+            yaw: wrapped_angle(self.yaw + yaw),
             pitch: (self.pitch + pitch).clamp(-MAX_PITCH, MAX_PITCH),
             ..self
         }

@@ -15,6 +15,13 @@ impl Scene {
         objects.chain(markers).collect()
     }
 
+    /// Yields the color packs that objects and markers use, with their names, in the order of the scene.
+    pub fn packs_in_use(&self) -> impl Iterator<Item = (&String, &ColorPack)> {
+        let used = self.used_packs();
+        let packs = self.color_packs.iter();
+        packs.filter(move |(name, _)| used.contains(name.as_str()))
+    }
+
     /// Replaces the color pack of every object and marker for which `replacement` returns a name.
     pub fn replace_packs<'a>(&mut self, replacement: impl Fn(&str) -> Option<&'a str>) {
         // Element by element: unchanged elements stay shared with earlier undo states.

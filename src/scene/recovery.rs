@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file::Document;
-use crate::files::{Stamp, is_same_file, write_atomic};
+use crate::files::{Stamp, is_same_file, make_folder, write_atomic};
 
 /// Start of the first line of a recovery file, followed by the path of the document.
 const PATH_MARK: &str = "// unsaved changes of: ";
@@ -42,7 +42,7 @@ impl Recovery {
     /// # Errors
     /// Any I/O error; the program then works without recovery.
     pub fn new(folder: &Path) -> io::Result<Self> {
-        fs::create_dir_all(folder)?;
+        make_folder(folder)?;
         let mut number = std::process::id();
         loop {
             let path = folder.join(format!("{FILE_PREFIX}{number}.ron"));

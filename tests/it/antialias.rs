@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
 use glint::image::LinearRgb;
-use glint::lab::{difference, mean, trace_light};
+use glint::lab::{difference, mean_of_two, trace_light};
 use glint::mesh::{SOLIDS, Triangles};
 use glint::plan::RenderRequest;
 use glint::scene::{
@@ -50,7 +50,7 @@ fn truth_of(scene: &Scene, side: u32) -> Vec<LinearRgb> {
         };
         linear(scene, &fine).0
     });
-    mean(&first, &second)
+    mean_of_two(&first, &second).0
 }
 
 /// Measures square pictures with these samplings and this many pixels per side against the reference.

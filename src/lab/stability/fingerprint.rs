@@ -11,7 +11,7 @@ use crate::animate::shot_of_frame;
 use crate::export::fingerprint;
 use crate::image::{Format, Image, render};
 use crate::plan::RenderRequest;
-use crate::scene::{Animation, Camera, Easing, Interpolation, Key, Scene};
+use crate::scene::{Animation, Camera, Key, Scene};
 use crate::trace::RenderControl;
 
 /// Distances by which the key moves, in units of a scene whose size is some hundred of them.
@@ -62,14 +62,15 @@ fn changed(number: u64, distance: f64) -> Vec<bool> {
 /// The demo with a flight of three keys; the middle one is displaced by `step`.
 fn flight(step: DVec3) -> Arc<Scene> {
     let scene = Scene::demo();
-    let at = |time: f64, offset: DVec3| Key {
-        time,
-        value: Camera {
-            position: scene.camera.position + offset,
-            ..scene.camera.clone()
-        },
-        interpolation: Interpolation::default(),
-        easing: Easing::default(),
+    let at = |time: f64, offset: DVec3| {
+        let position = scene.camera.position + offset;
+        Key::new(
+            time,
+            Camera {
+                position,
+                ..scene.camera.clone()
+            },
+        )
     };
     let keys = vec![
         at(0.0, DVec3::ZERO),

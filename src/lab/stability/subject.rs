@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::animate::motion_between;
-use crate::scene::{Method as _, Orientation, Render, Scene, Shape};
+use crate::scene::{Method as _, Orientation, Scene, Shape};
 
 /// The subject of a map, which determines the setting that it tests and the position of a scene on its axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,8 @@ impl MapSubject {
     }
 
     /// The id of the method that the settings choose; `None` if there is no choice.
-    pub fn method_in_use(self, render: &Render) -> Option<String> {
+    pub fn method_in_use(self, scene: &Scene) -> Option<String> {
+        let render = &scene.render;
         match self {
             Self::Sphere => Some(render.sphere.id()),
             Self::Triangle => Some(render.triangle.id()),
@@ -99,9 +100,7 @@ impl MapSubject {
         match self {
             Self::Sphere | Self::Disc => self.farthest(scene),
             Self::Highlight => {
-                let used = scene.used_packs();
-                let packs = scene.color_packs.iter();
-                let packs = packs.filter(|(name, _)| used.contains(name.as_str()));
+                let packs = scene.packs_in_use();
                 let exponents = packs.map(|(_, pack)| pack.phong_exponent);
                 let sharpest = exponents.max_by(f64::total_cmp)?;
                 Some((sharpest, 1.0))
@@ -157,5 +156,5 @@ impl MapSubject {
 /// Centre and half diagonal of the bounding box of everything visible and finite.
 fn middle_and_size(scene: &Scene) -> Option<(DVec3, f64)> {
     let (low, high) = scene.bounds()?;
-    Some(((low + high) * 0.5, (high - low).length() / 2.0))
+    Some((low.midpoint(high), (high - low).length() / 2.0))
 }

@@ -82,7 +82,7 @@ fn broken_stl() {
     binary[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
     assert_eq!(
         error_of("m.stl", binary),
-        "m.stl: point 1 has a coordinate that is not a finite number within 1e12 of 0"
+        "m.stl: point 0, counted from 0, has a coordinate that is not a finite number within 1e12 of 0"
     );
 }
 

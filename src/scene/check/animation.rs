@@ -25,8 +25,7 @@ pub fn check_animation(at: &At, scene: &Scene) -> Check {
         check_camera(&list_at.index(index).field("value"), &key.value)?;
     }
     let list_at = at.field("tracks");
-    let targets = animation.tracks.iter().map(|track| &track.target);
-    let owners = Owners::of(scene, targets);
+    let owners = Owners::of(scene, animation.targets());
     let mut known = HashSet::new();
     for (index, track) in animation.tracks.iter().enumerate() {
         let at = list_at.index(index);

@@ -4,13 +4,10 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use crate::mesh::MAX_ABS_COORDINATE;
+pub use crate::mesh::MAX_COORDINATE;
 use crate::scene::direction::unit;
 use crate::scene::locate::PathStep;
 use crate::scene::notation::format_number;
-
-/// Largest absolute coordinate or length, in world units, and largest absolute angle in degrees.
-pub const MAX_COORDINATE: f64 = MAX_ABS_COORDINATE;
 
 /// Largest scale factor; the smallest is its reciprocal.
 pub const MAX_FACTOR: f64 = 1e6;

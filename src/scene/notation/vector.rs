@@ -3,9 +3,9 @@
 use glam::DVec3;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple as _;
-use serde::{Deserialize, Deserializer, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::number::Shortest;
+use super::number::{self, Shortest};
 
 /// Writes the three numbers.
 pub fn serialize<S: Serializer>(value: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
@@ -39,8 +39,23 @@ pub enum Value {
     Point(DVec3),
 }
 
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(value) => number::serialize(value, serializer),
+            Self::Point(point) => serialize(point, serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Value {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NumberOrPoint("a number or a point such as (1, 2, 3)"))
+    }
+}
+
 /// Deserializes a number or a vector. Holds the description of what is expected, for error messages.
-pub struct NumberOrPoint(pub &'static str);
+struct NumberOrPoint(&'static str);
 
 impl<'de> Visitor<'de> for NumberOrPoint {
     type Value = Value;

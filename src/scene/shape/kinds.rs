@@ -154,7 +154,7 @@ impl Shape {
     /// The centre of the bounding box; for unbounded shapes, the position.
     pub fn middle(&self) -> DVec3 {
         match self.bounds() {
-            Some((low, high)) => low * 0.5 + high * 0.5,
+            Some((low, high)) => low.midpoint(high),
             None => self.position(),
         }
     }

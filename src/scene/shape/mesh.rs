@@ -11,7 +11,7 @@ use super::angles::{orientation_of, turned_about};
 use super::describe::{Describe, Property, PropertyValue};
 use super::mesh_source::{MeshFiles, MeshSource};
 use super::plane_piece::PlanePiece;
-use crate::mesh::{MAX_ABS_COORDINATE, Triangles, icosphere};
+use crate::mesh::{MAX_COORDINATE, Triangles, icosphere, is_in_bounds};
 use crate::scene::notation;
 
 /// A triangle mesh, which is moved, turned and scaled as a whole.
@@ -76,12 +76,12 @@ impl<'de> Deserialize<'de> for Point {
     /// Checks the coordinates here, where the parser knows the line.
     fn deserialize<D: Deserializer<'de>>(file: D) -> Result<Self, D::Error> {
         let point = notation::vector::deserialize(file)?;
-        if point.is_finite() && point.abs().max_element() <= MAX_ABS_COORDINATE {
+        if is_in_bounds(point) {
             return Ok(Self(point));
         }
-        Err(D::Error::custom(
-            "a point of a mesh has a coordinate that is not a finite number within 1e12 of 0",
-        ))
+        Err(D::Error::custom(format!(
+            "a point of a mesh has a coordinate that is not a finite number within {MAX_COORDINATE:e} of 0"
+        )))
     }
 }
 
@@ -177,7 +177,7 @@ impl Mesh {
         let size = (high - low).max_element();
         let step = (size / 8.0).log2().floor().exp2().min(1.0);
         let step = if step > 0.0 { step } else { 1.0 };
-        let middle = ((low * 0.5 + high * 0.5) / step).round() * step;
+        let middle = (low.midpoint(high) / step).round() * step;
         let points = triangles.points().iter().map(|&point| point - middle);
         match Triangles::new(points.collect(), triangles.faces().to_vec()) {
             Ok(moved) => Self {
@@ -300,8 +300,8 @@ impl Describe for Mesh {
     fn problem(&self) -> Option<String> {
         let (low, high) = self.bounds()?;
         let farthest = low.abs().max(high.abs()).max_element();
-        (farthest > MAX_ABS_COORDINATE)
-            .then(|| "the mesh must lie within 1e12 of the origin".to_owned())
+        (farthest > MAX_COORDINATE)
+            .then(|| format!("the mesh must lie within {MAX_COORDINATE:e} of the origin"))
     }
 
     /// Returns the bounds of the transformed local bounding box, which may be larger than those of the triangles.
@@ -324,7 +324,7 @@ impl Describe for Mesh {
     /// displaced along with them.
     fn feature(&self) -> Option<(DVec3, f64)> {
         let (low, high) = self.bounds()?;
-        Some((low * 0.5 + high * 0.5, (high - low).length()))
+        Some((low.midpoint(high), (high - low).length()))
     }
 }
 

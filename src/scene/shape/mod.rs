@@ -1,7 +1,8 @@
 //! The primitive shapes of the scene file, one module each.
 //!
 //! A new shape needs a file here that implements [`Describe`] and a line in the list in `kinds.rs`; a file and a
-//! line in [`crate::primitive`], which has the kernels; and a symbol in the user interface's `icons.rs`.
+//! line in [`crate::primitive`], which has the kernels; a symbol in the user interface's `icons.rs`; and what the
+//! compiler then asks for.
 
 mod plane_piece;
 

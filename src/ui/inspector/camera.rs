@@ -5,8 +5,8 @@ use egui::{Align, Id, Layout, Ui, vec2};
 use super::title::{name_field, title};
 use crate::editor::{Edit, Editor, free_bookmark_name};
 use crate::scene::{
-    Bookmark, Camera, MAX_COORDINATE, Orientation, PROJECTION_DISTANCES, Projection,
-    field_of_view_radians,
+    Bookmark, Camera, MAX_COORDINATE, MIN_ORTHOGRAPHIC_HEIGHT, Orientation, PROJECTION_DISTANCES,
+    Projection, field_of_view_radians,
 };
 use crate::ui::commands::Command;
 use crate::ui::icons;
@@ -110,7 +110,7 @@ fn projection_rows(rows: &mut FieldRows, camera: &mut Camera) {
                 hint: "Height of the view window, in world units",
                 unit: "",
                 default: defaults.orthographic_height,
-                range: 1e-6..=MAX_COORDINATE,
+                range: MIN_ORTHOGRAPHIC_HEIGHT..=MAX_COORDINATE,
                 speed: None,
             },
             &mut camera.orthographic_height,

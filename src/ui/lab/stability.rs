@@ -66,7 +66,7 @@ impl Stability {
                         ui.weak("The frame marks where your scene is.");
                     }
                 }
-                let used = map.subject.method_in_use(&scene.render);
+                let used = map.subject.method_in_use(scene);
                 if let Some(used) = used.filter(|used| *used != map.method)
                     && self.is_used(scene, map)
                 {
@@ -102,7 +102,7 @@ impl Stability {
     /// Returns whether the scene uses this method. If its parameter has a value that was not tested, maps of the
     /// same method with another value count.
     fn is_used(&self, scene: &Scene, map: &Map) -> bool {
-        let Some(used_method) = map.subject.method_in_use(&scene.render) else {
+        let Some(used_method) = map.subject.method_in_use(scene) else {
             return map.is_default;
         };
         let mut same_subject = self

@@ -100,7 +100,7 @@ pub fn framing_camera(editor: &Editor, only_selected: bool) -> Option<Camera> {
         (false, false) => 1.0,
     };
     let margin = DVec3::splat(margin);
-    let middle = low * 0.5 + high * 0.5;
+    let middle = low.midpoint(high);
     let bounds = (low.min(middle - margin), high.max(middle + margin));
     Some(scene.camera.around(scene.render.aspect_ratio(), bounds))
 }

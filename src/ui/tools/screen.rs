@@ -97,7 +97,7 @@ impl Screen {
             }
             Shape::Mesh(_) => {
                 let (low, high) = shape.bounds()?;
-                self.on_plane(at, low * 0.5 + high * 0.5, self.forward())
+                self.on_plane(at, low.midpoint(high), self.forward())
             }
         }
     }
