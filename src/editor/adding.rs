@@ -38,7 +38,7 @@ pub fn add_object(scene: &mut Scene, name: &str, shape: Shape) -> Item {
         Shape::Plane(_) => &[FLOOR_COLOR][..],
         _ => &COLORS,
     };
-    let color = colors[scene.color_packs.len() % colors.len()];
+    let color = rarest(scene, colors);
     let color_pack = free_pack(scene, colors)
         .unwrap_or_else(|| insert_pack(scene, &name.to_lowercase(), ColorPack::of_color(color)).1);
     if let Some(pack) = scene.packs_mut().get_mut(&color_pack)
@@ -184,14 +184,28 @@ pub fn make_packs_unique(scene: &mut Scene, objects: &[usize]) {
     scene.color_packs = Packs::from(packs);
 }
 
-/// Returns the name of an unused color pack that nobody has edited: with the default values, or with those of a new
-/// object's pack in one of these colours. Other unused ones are left alone: the user may have made them for later.
+/// Returns the first of these colours that the fewest color packs have.
+fn rarest(scene: &Scene, colors: &[DVec3]) -> DVec3 {
+    let count = |color: &&DVec3| {
+        let diffuse = ColorPack::of_color(**color).diffuse;
+        let packs = scene.color_packs.values();
+        packs.filter(|pack| pack.diffuse == diffuse).count()
+    };
+    colors.iter().min_by_key(count).copied().unwrap_or_default()
+}
+
+/// Returns the name of an unused color pack that nobody has edited: with a number in its name, and with the default
+/// values, or with those of a new object's pack in one of these colours. Other unused ones are left alone: the user may
+/// have made them for later.
 fn free_pack(scene: &Scene, colors: &[DVec3]) -> Option<String> {
     let used = scene.used_packs();
     let new = colors.iter().copied().map(ColorPack::of_color);
     let new: Vec<ColorPack> = new.chain([ColorPack::default()]).collect();
     let mut packs = scene.color_packs.iter();
-    let free = packs.find(|(name, pack)| !used.contains(name.as_str()) && new.contains(pack));
+    let is_numbered = |name: &str| name.ends_with(|last: char| last.is_ascii_digit());
+    let free = packs.find(|(name, pack)| {
+        is_numbered(name) && !used.contains(name.as_str()) && new.contains(pack)
+    });
     free.map(|(name, _)| name.clone())
 }
 
@@ -200,4 +214,35 @@ fn insert_pack(scene: &mut Scene, name: &str, pack: ColorPack) -> (usize, String
     let name = free_pack_name(scene, name);
     let (index, _) = scene.packs_mut().insert_full(name.clone(), pack);
     (index, name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Sphere;
+
+    fn pack_of<'a>(scene: &'a Scene, name: &str) -> &'a ColorPack {
+        scene.color_packs.get(name).expect("there is one")
+    }
+
+    #[test]
+    fn new_objects_have_different_colours_and_packs_with_names_of_their_own_stay() {
+        let mut scene = Scene::empty();
+        let gold = insert_pack(&mut scene, "gold", ColorPack::default()).1;
+        let ball = Sphere {
+            center: DVec3::ZERO,
+            radius: 1.0,
+        };
+        let mut colors: Vec<DVec3> = Vec::new();
+        for _ in 0..COLORS.len() {
+            add_object(&mut scene, "Sphere", ball.into());
+            let added = scene.objects.last().expect("it was added");
+            assert_ne!(added.color_pack, gold);
+            let color = pack_of(&scene, &added.color_pack).diffuse;
+            assert!(!colors.contains(&color), "{color}");
+            colors.push(color);
+        }
+        assert_eq!(*pack_of(&scene, &gold), ColorPack::default());
+        assert!(scene.used_packs().contains("pack 1"), "nobody named it");
+    }
 }

@@ -293,9 +293,12 @@ impl AnimationState {
         is_any_keyed
     }
 
-    /// Writes the shown value of each target that has a track in `scene`, but none in `next`, to `next`: what loses
-    /// its last key stays as it is seen.
+    /// Writes the shown value of each target that has a track in `scene`, but none in `next`, to `next`, and the same
+    /// for the camera: what loses its last key stays as it is seen.
     fn keep_unkeyed(&self, scene: &Scene, next: &mut Scene) {
+        if self.timeline.looks_through(&scene.animation) && next.animation.keys.is_empty() {
+            next.camera.clone_from(&self.shown.camera);
+        }
         let gone = scene.animation.targets_lost_in(&next.animation);
         let [in_shown, in_next] =
             [&*self.shown, &*next].map(|scene| Owners::of(scene, gone.iter().copied()));

@@ -379,10 +379,10 @@ impl Editor {
         if is_camera {
             self.animation_state.switch_to_view();
         }
+        self.dismiss_refusal();
         if next == posed {
             return true;
         }
-        self.dismiss_refusal();
         if is_keyed {
             self.animation_state.pause(&next.animation);
         }

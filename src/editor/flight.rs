@@ -1,14 +1,16 @@
 //! Effects of timeline actions on the document: playback, recording, making keys of a recording.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::action::Mode;
 use super::animation_state::Pending;
 use super::document::Editor;
 use super::edit::Edit;
+use super::item::ItemKind;
 use super::timeline::{REFERENCE_HEIGHT, Recording, Time};
 use crate::animate::{Landmark, WorstDeviation, resampled, simplify};
-use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Sample, Take};
+use crate::scene::{Animation, Camera, Key, MAX_SECONDS, Owner, Sample, Take, Target};
 use crate::words::counted;
 
 /// Most keys that a recording should become: a base number, and more per second. About as many as can be edited by
@@ -29,7 +31,7 @@ impl Editor {
             Time::Seek(seconds) => {
                 // Beyond the end is allowed, too: the next key may go there.
                 timeline.seek(animation, seconds.clamp(0.0, MAX_SECONDS));
-                self.show_time();
+                self.show_sought();
             }
             Time::Stretched(from, by) => timeline.stretch(from, by),
             Time::Step(frames) => {
@@ -39,7 +41,7 @@ impl Editor {
                 let frame = frame.saturating_add_signed(frames).clamp(1, last);
                 timeline.is_playing = false;
                 timeline.seek(animation, animation.time_of(frame));
-                self.show_time();
+                self.show_sought();
             }
             Time::Play(is_playing) => {
                 timeline.play(is_playing, animation);
@@ -106,6 +108,30 @@ impl Editor {
         if self.mode == Mode::HighRes {
             self.mode = Mode::Live;
         }
+    }
+
+    /// Shows another time. Whoever gives keys to a thing moves it in their own view.
+    fn show_sought(&mut self) {
+        if !self.animation_state.timeline.wants_shot && self.is_selection_keyed() {
+            self.leave_still();
+        } else {
+            self.show_time();
+        }
+    }
+
+    /// Whether an item with keys is selected.
+    fn is_selection_keyed(&self) -> bool {
+        let items = self.selection.items();
+        let owners = self.scene.animation.targets().filter_map(Target::owner);
+        let owners: HashSet<Owner> = owners.collect();
+        items.iter().any(|item| {
+            let name = item.name(&self.scene).unwrap_or_default();
+            match item.kind {
+                ItemKind::Light => owners.contains(&Owner::Light(name)),
+                ItemKind::Object => owners.contains(&Owner::Object(name)),
+                ItemKind::Pack => false,
+            }
+        })
     }
 
     /// Looks through the shot camera to show the animation, unless the user has chosen to stay outside.
@@ -239,6 +265,7 @@ impl Editor {
             jumps => format!("; the view jumped {jumps} times"),
         };
         let tolerance = timeline.tolerance;
+        self.animation_state.keep_simplified();
         self.animation_state
             .remember_simplified(Arc::clone(&take), tolerance, keys.clone());
         let animation = Animation {

@@ -6,8 +6,8 @@ use super::action::STEP;
 use super::*;
 use crate::mesh::Triangles;
 use crate::scene::{
-    Animation, Document, Easing, Interpolation, Key, Mesh, MeshSource, Object, Scene, Shape,
-    Sphere, Target, Track, Value, check,
+    Animation, Camera, Document, Easing, Interpolation, Key, Mesh, MeshSource, Object, Scene,
+    Shape, Sphere, Target, Track, Value, check,
 };
 use proptest::prelude::*;
 
@@ -514,6 +514,66 @@ fn what_loses_its_last_key_stays_as_it_is_seen() {
     editor.apply(Action::Undo);
     assert_eq!(editor.scene().lights[0].position, before);
     assert_eq!(editor.shown().lights[0].position, seen);
+}
+
+#[test]
+fn the_view_stays_when_the_camera_loses_its_last_key() {
+    let mut editor = Editor::demo();
+    let own = editor.scene().camera.clone();
+    let at = |time: f64, x: f64| {
+        let position = own.position + DVec3::X * x;
+        Key::new(
+            time,
+            Camera {
+                position,
+                ..own.clone()
+            },
+        )
+    };
+    let animation = Animation {
+        keys: vec![at(0.0, 5.0), at(2.0, 25.0)],
+        ..Animation::default()
+    };
+    editor.apply(Action::Edit(Edit::animation(animation, "Keys")));
+    editor.apply(Action::Time(Time::Seek(1.0)));
+    for is_through in [false, true] {
+        if editor.looks_through() != is_through {
+            editor.apply(Action::Time(Time::LookThrough(is_through)));
+        }
+        let seen = editor.shown().camera.clone();
+        assert_eq!(seen != own, is_through);
+        let keys = editor.scene().animation.all_keys();
+        let edit = Edit::delete_keys(&editor.scene().animation, &keys);
+        editor.apply(Action::Edit(edit));
+        assert_eq!(editor.scene().camera, seen);
+        assert_eq!(editor.shown().camera, seen);
+        editor.apply(Action::Undo);
+        assert_eq!(editor.scene().camera, own);
+    }
+}
+
+#[test]
+fn the_view_stays_while_something_with_keys_is_selected() {
+    let mut editor = Editor::demo();
+    let light = editor.scene().lights[0].clone();
+    let camera = |time: f64| Key::new(time, editor.scene().camera.clone());
+    let animation = Animation {
+        keys: vec![camera(0.0), camera(2.0)],
+        ..Animation::default()
+    };
+    let target = Target::LightPosition(light.name);
+    let animation = animation.with_value(&target, 0.0, Value::Point(light.position));
+    editor.apply(Action::Edit(Edit::animation(animation, "Keys")));
+    for (selected, looks_through) in [
+        (Item::light(0), false),
+        (Item::light(1), true),
+        (Item::light(0), true),
+    ] {
+        editor.apply(Action::Select(selected.into()));
+        editor.apply(Action::Time(Time::Seek(1.0)));
+        // Who looks through the shot already goes on doing so.
+        assert_eq!(editor.looks_through(), looks_through, "{selected:?}");
+    }
 }
 
 #[test]

@@ -257,12 +257,12 @@ mod tests {
             .collect();
         let disc = Disc {
             center: at(1.5),
-            normal: DVec3::X,
+            normal: DVec3::Y,
             radius: 0.25,
         };
         objects.push(Object::new("Disc", "plane", disc));
         // On a ball, beside it, on the disc, and in the disc's plane.
-        let mut lights = vec![at(22.0), at(22.4), at(1.5), DVec3::new(1.5, 9.0, 0.0)];
+        let mut lights = vec![at(22.0), at(22.4) + DVec3::Y, at(1.5), at(1.9)];
         for are_many in [false, true] {
             if are_many {
                 let more = MAX_PAIRS / objects.len() - lights.len() + 1;

@@ -160,7 +160,22 @@ impl Animation {
     /// one it lands on.
     pub fn with_moved(&self, ids: &Keys, shift: f64, are_copies: bool) -> (Self, Keys) {
         let (first, last) = self.span_of(ids).unwrap_or((0.0, MAX_SECONDS));
-        let movement = (shift.clamp(-first, MAX_SECONDS - last), are_copies);
+        let shift = shift.clamp(-first, MAX_SECONDS - last);
+        self.with_new_times(ids, (&|time| time + shift, are_copies))
+    }
+
+    /// Returns the animation with these keys spread over another duration, in seconds, from the first of them on, and
+    /// their new ids. The last one stays at or before [`MAX_SECONDS`]. Each key replaces the one it lands on.
+    pub fn with_stretched(&self, ids: &Keys, duration: f64) -> (Self, Keys) {
+        let (first, last) = self.span_of(ids).unwrap_or((0.0, MAX_SECONDS));
+        let factor = duration.min(MAX_SECONDS - first) / (last - first);
+        if !factor.is_finite() {
+            return (self.clone(), ids.clone());
+        }
+        self.with_new_times(ids, (&|time| first + (time - first) * factor, false))
+    }
+
+    fn with_new_times(&self, ids: &Keys, movement: Movement) -> (Self, Keys) {
         let (mut animation, mut new) = (self.clone(), Keys::new());
         let mut record = |track, indices: Vec<usize>| {
             let id = |index| KeyId { track, index };
@@ -353,18 +368,25 @@ fn retain_others<T>(keys: &mut Vec<Key<T>>, track: Option<usize>, ids: &Keys) {
     });
 }
 
-/// Moves the keys at `indices` (ascending), or copies of them, by `shift` seconds. Returns their new indices.
+/// The new time of a key, in seconds, by its old one, and whether a copy is moved.
+type Movement<'a> = (&'a dyn Fn(f64) -> f64, bool);
+
+/// Moves the keys at `indices` (ascending), or copies of them. Returns their new indices.
 fn move_keys<T: Clone>(
     animation: &Animation,
     keys: &mut Vec<Key<T>>,
     indices: &[usize],
-    (shift, are_copies): (f64, bool),
+    (new_time, are_copies): Movement,
 ) -> Vec<usize> {
     let moved = indices.iter().filter_map(|&index| keys.get(index));
-    let moved: Vec<Key<T>> = moved
-        .map(|key| Key {
-            time: key.time + shift,
-            ..key.clone()
+    // Each with its earlier time.
+    let moved: Vec<(f64, Key<T>)> = moved
+        .map(|key| {
+            let moved = Key {
+                time: new_time(key.time),
+                ..key.clone()
+            };
+            (key.time, moved)
         })
         .collect();
     if moved.is_empty() {
@@ -375,13 +397,9 @@ fn move_keys<T: Clone>(
     let others: Vec<&Key<T>> = others.map(|(_, key)| key).collect();
     let near = 1.0 / animation.frames_per_second;
     // The nearest of the keys that a moved key may replace: recorded keys may be much closer together than frames.
-    let replaced = |key: &Key<T>| {
+    let replaced = |(time, key): &(f64, Key<T>)| {
         // A copy has no earlier position.
-        let from = if are_copies {
-            f64::INFINITY
-        } else {
-            key.time - shift
-        };
+        let from = if are_copies { f64::INFINITY } else { *time };
         let distance = |other: &usize| (others[*other].time - key.time).abs();
         let first = others.partition_point(|other| other.time < key.time - near);
         let nearby = (first..others.len()).take_while(|other| distance(other) <= near);
@@ -393,7 +411,7 @@ fn move_keys<T: Clone>(
     let others = others.iter().enumerate();
     let others = others.filter(|(other, _)| !replaced.contains(other));
     let mut all: Vec<(Key<T>, bool)> = others.map(|(_, key)| (Key::clone(key), false)).collect();
-    all.extend(moved.iter().map(|key| (key.clone(), true)));
+    all.extend(moved.into_iter().map(|(_, key)| (key, true)));
     all.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
     let new = (0..all.len()).filter(|&index| all[index].1).collect();
     *keys = all.into_iter().map(|(key, _)| key).collect();

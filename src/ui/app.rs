@@ -332,12 +332,14 @@ impl eframe::App for App {
         // A recorded flight stays as it was flown.
         let is_recording = self.editor.timeline().recorded().is_some();
         let cancels_look = !is_recording && self.flying.cancels_look(ui);
+        let commands = self.take_commands(ui, keys_are_free);
+        let takes_back = !is_recording && self.flying.is_sinking() && !commands.is_empty();
         let mut out = UiRequests {
-            actions: cancels_look
+            actions: (cancels_look || takes_back)
                 .then_some(Action::CancelGesture)
                 .into_iter()
                 .collect(),
-            commands: self.take_commands(ui, keys_are_free),
+            commands,
             ..UiRequests::default()
         };
         let picture = self.show_panels(ui, &mut out);

@@ -80,15 +80,21 @@ enum Ctrl {
     Waiting(f64),
     /// Flying down together with other keys.
     Flying,
-    /// Flying down alone: the next key pressed belongs to a shortcut.
+    /// Flying down alone after other keys were let go: the next key pressed belongs to a shortcut.
     FlyingAlone,
+    /// Flying down since it was held by itself for a while, which a shortcut takes back.
+    Sinking,
     /// Part of a shortcut.
     Shortcut,
 }
 
 impl Ctrl {
     fn is_flying(self) -> bool {
-        matches!(self, Self::Flying | Self::FlyingAlone)
+        matches!(self, Self::Flying) || self.is_alone()
+    }
+
+    fn is_alone(self) -> bool {
+        matches!(self, Self::FlyingAlone | Self::Sinking)
     }
 }
 
@@ -203,7 +209,12 @@ impl Flying {
 
     /// Whether keys move the camera, in which case they are not shortcuts.
     pub fn is_flying(&self) -> bool {
-        self.keys_fly && self.ctrl != Ctrl::FlyingAlone
+        self.keys_fly && !self.ctrl.is_alone()
+    }
+
+    /// Whether the camera flies down only because the control key, with which a shortcut may begin, is held.
+    pub fn is_sinking(&self) -> bool {
+        self.ctrl == Ctrl::Sinking
     }
 
     /// Whether a flight or a turn of the wheel goes on, which is one undo step.
@@ -240,11 +251,12 @@ impl Flying {
         self.ctrl = match self.ctrl {
             _ if !ctrl => Ctrl::Released,
             Ctrl::Released if self.keys_fly => Ctrl::Flying,
-            Ctrl::Released | Ctrl::Waiting(_) | Ctrl::FlyingAlone if has_others => Ctrl::Shortcut,
+            Ctrl::Released | Ctrl::Waiting(_) if has_others => Ctrl::Shortcut,
+            current if current.is_alone() && has_others => Ctrl::Shortcut,
             // Outside the picture, it is held for a click that comes later.
             Ctrl::Released | Ctrl::Waiting(_) if !picture.contains_pointer() => Ctrl::Shortcut,
             Ctrl::Released => Ctrl::Waiting(now),
-            Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Flying,
+            Ctrl::Waiting(since) if now - since >= CTRL_DELAY => Ctrl::Sinking,
             current => current,
         };
         if matches!(self.ctrl, Ctrl::Waiting(_)) {

@@ -10,12 +10,15 @@ use glam::DVec3;
 
 use super::arithmetic::calculate;
 use super::hint::Hinted as _;
+use super::prompts::select_letters;
 use super::step_size::{MAX_STEP, step_size};
 use super::theme::ROW;
 use crate::scene::{MAX_COORDINATE, parse_vec3};
 use crate::ui::commands::take_escape;
 use crate::words::quoted;
 
+/// Angle in degrees below which nothing but rounding is left of it.
+const ROUNDED_ANGLE: f64 = 1e-9;
 /// Characters that fit into one of three fields in a row.
 const NARROW_CHARS: usize = 7;
 /// The lower end of a range, if below this, only means that numbers must be above 0.
@@ -247,7 +250,9 @@ pub fn drag(ui: &mut Ui, number: &Number, value: &mut f64) -> bool {
             unit => widget.suffix(RichText::new(unit).weak()),
         };
         let room = vec2(width.max(8.0), ROW);
-        let layout = Layout::right_to_left(Align::Center).with_main_justify(true);
+        let layout = Layout::right_to_left(Align::Center)
+            .with_main_justify(true)
+            .with_main_align(Align::Max);
         let placed = ui.allocate_ui_with_layout(room, layout, |ui| {
             ui.add(widget.min_size(room)).accessible_name(name)
         });
@@ -311,6 +316,10 @@ fn edit_value(
         .custom_formatter(|number, _| format_value(number))
         .custom_parser(parser);
     let response = add(ui, widget);
+    if response.double_clicked() {
+        // egui selects only the digits up to the decimal point.
+        select_letters(ui, response.id, 0..usize::MAX);
+    }
     if let Some(start) = track_drag(ui, &response, *value) {
         // For the scene, the whole step is undone as well, see [`drag_step`]; other numbers are only restored here.
         *value = start;
@@ -357,7 +366,7 @@ fn rounded(value: f64, unit: &str, max_chars: usize) -> String {
         size if size >= 100.0 => 2,
         size if size >= 1.0 => 3,
         size if size >= 1e-3 => 5,
-        0.0 => return "0".to_owned(),
+        size if size == 0.0 || (unit == "°" && size < ROUNDED_ANGLE) => return "0".to_owned(),
         // All its digits would be wider than the field.
         _ => return format!("{value:.1e}"),
     };

@@ -158,7 +158,13 @@ impl PathPrompt {
             let warning = self.warning();
             let is_possible = warning.as_ref().is_none_or(|warning| warning.is_possible);
             let words = warning.map_or(String::new(), |warning| warning.words);
-            ui.colored_label(palette(ui.ctx()).accent, words);
+            // The caret below a quoted line must keep its column.
+            let (sentence, excerpt) = words.split_once('\n').unwrap_or((&words, ""));
+            let accent = palette(ui.ctx()).accent;
+            ui.colored_label(accent, sentence);
+            if !excerpt.is_empty() {
+                ui.label(RichText::new(excerpt).monospace().color(accent));
+            }
             ui.add_space(GRID);
             ui.horizontal(|ui| {
                 let entered = field.lost_focus() && ui.input(is_entered);

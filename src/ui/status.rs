@@ -39,12 +39,13 @@ pub fn show(
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = WIDGET_HEIGHT;
         ui.spacing_mut().button_padding.y = 0.0;
+        // At the edge, where it stays in place while the activity changes.
+        check.show(ui, scene, out);
         let max_width = ui.available_width() * MAX_SHARE;
         ui.scope(|ui| {
             ui.set_max_width(max_width);
             show_activity(ui, activity, shown_revision, note, out);
         });
-        check.show(ui, scene, out);
         // The description is truncated if there is not enough room.
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let words = RichText::new(picture).monospace().weak();

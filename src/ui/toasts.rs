@@ -76,7 +76,8 @@ impl Toasts {
             ctx.request_repaint_after_secs(seconds as f32);
         }
         let window_area = ctx.content_rect();
-        let max_width = WIDTH.min(window_area.width() * 0.45);
+        // In a small picture, they would cover the panel on the left.
+        let max_width = WIDTH.min(area.width() - 4.0 * GRID).max(MIN_WIDTH);
         let room_beside =
             |right: f32| window.map_or(max_width, |window| right - window.right() - SIDE_MARGINS);
         // If the picture has no room beside the window, the messages may cover the panel on the right.

@@ -194,19 +194,36 @@ fn a_long_drag_of_the_tolerance_that_is_undone_leaves_keys_that_are_not_edited()
     assert_eq!(editor.timeline().tolerance, before);
 }
 
+/// Records two seconds of flight to the right, along a bend.
+fn record(editor: &mut Editor) {
+    editor.apply(Action::Time(Time::Record));
+    for tenth in 0..20 {
+        let mut camera = editor.scene().camera.clone();
+        camera.position.x += 1.0;
+        camera.position.y += f64::from(tenth % 7) * 0.05;
+        editor.apply(Action::Edit(Edit::Camera(camera, "move")));
+        editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
+    }
+    editor.apply(Action::Time(Time::Stop));
+}
+
+#[test]
+fn the_tolerance_of_a_recording_comes_back_when_the_next_one_is_undone() {
+    let mut editor = Editor::demo();
+    record(&mut editor);
+    survey_flight(&mut editor);
+    let before = editor.timeline().tolerance;
+    record(&mut editor);
+    survey_flight(&mut editor);
+    editor.apply(Action::Undo);
+    survey_flight(&mut editor);
+    assert!(!editor.timeline().is_edited);
+    assert_eq!(editor.timeline().tolerance, before);
+}
+
 #[test]
 fn no_recorded_flight_is_lost_while_it_becomes_keys() {
     let mut editor = Editor::demo();
-    let record = |editor: &mut Editor| {
-        editor.apply(Action::Time(Time::Record));
-        for tenth in 0..20 {
-            let mut camera = editor.scene().camera.clone();
-            camera.position.x += 1.0;
-            editor.apply(Action::Edit(Edit::Camera(camera, "move")));
-            editor.apply(Action::Time(Time::Sample(f64::from(tenth) / 10.0)));
-        }
-        editor.apply(Action::Time(Time::Stop));
-    };
     record(&mut editor);
     assert!(editor.is_making_keys() && editor.is_dirty());
     let take = editor.wanted_survey().cloned().expect("a take");
@@ -386,10 +403,14 @@ fn keys_are_dragged_copied_and_picked_with_the_mouse() {
     );
     // The time of the earliest selected key is typed; the others follow.
     select_two_keys(&mut harness);
-    harness.window.get_by_label("2 keys in 1 s");
+    harness.window.get_by_label("2 keys");
     harness.type_into("first at", "1.25");
     assert_eq!(times(&harness), [0.0, 1.25, 2.25, 4.0]);
     assert_eq!(harness.editor().undo_label(), Some("Key: time"));
+    harness.type_into("duration", "1.5");
+    assert_eq!(times(&harness), [0.0, 1.25, 2.75, 4.0]);
+    harness.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(times(&harness), [0.0, 1.25, 2.25, 4.0]);
     harness.type_into("first at", "3");
     assert_eq!(times(&harness), [0.0, 3.0, 4.0]);
     harness.assert_says(words);

@@ -39,6 +39,33 @@ fn keys_beside_each_other_are_deleted_and_moved_one_by_one() {
 }
 
 #[test]
+fn keys_are_stretched_from_the_first_of_them_on() {
+    let target = Target::AmbientIntensity;
+    let mut animation = Animation::default();
+    for time in [0.0, 1.0, 1.5, 3.0, 6.0] {
+        animation = animation.with_value(&target, time, Value::Number(time / 10.0));
+    }
+    let key = |index| KeyId {
+        track: Some(0),
+        index,
+    };
+    let three: Keys = (1..4).map(key).collect();
+    let (stretched, new) = animation.with_stretched(&three, 4.0);
+    assert_eq!(times(&stretched), [0.0, 1.0, 2.0, 5.0, 6.0]);
+    assert_eq!(new, three);
+    let (onto_the_last, new) = animation.with_stretched(&three, 5.0);
+    assert_eq!(times(&onto_the_last), [0.0, 1.0, 2.25, 6.0]);
+    assert_eq!(new, three);
+    assert_eq!(onto_the_last.tracks[0].keys[3].value, Value::Number(0.3));
+    let (shrunk, _) = animation.with_stretched(&three, 1.0);
+    assert_eq!(times(&shrunk), [0.0, 1.0, 1.25, 2.0, 6.0]);
+    let (longest, _) = animation.with_stretched(&three, 2.0 * MAX_SECONDS);
+    assert_eq!(times(&longest).last(), Some(&MAX_SECONDS));
+    let (alone, new) = animation.with_stretched(&[key(2)].into(), 4.0);
+    assert_eq!((alone, new), (animation, [key(2)].into()));
+}
+
+#[test]
 fn keys_of_the_camera_and_of_values_are_moved_and_paced_together() {
     let camera = |time: f64| Key::new(time, Camera::default());
     let animation = Animation {

@@ -290,14 +290,21 @@ pub fn presets(ui: &mut Ui, settings: &mut Settings, scene: &Scene) {
         ] {
             if ui.button(name).hint(hint).clicked() {
                 settings.format = format;
-                // The original program did not pad its numbers.
-                settings.name = match format {
-                    Format::Ppm => Pattern::default().text(),
-                    Format::Png | Format::Exr => PADDED_NAME.to_owned(),
-                };
                 settings.antialias = antialias;
-                let size = |side: u32| if is_half { side.div_ceil(2) } else { side };
-                (settings.width, settings.height) = (size(scene_size.0), size(scene_size.1));
+                // A name and a size that were typed stay. The original program did not pad its numbers.
+                let unpadded = Pattern::default().text();
+                if [PADDED_NAME, &unpadded].contains(&&*settings.name) {
+                    settings.name = match format {
+                        Format::Ppm => unpadded,
+                        Format::Png | Format::Exr => PADDED_NAME.to_owned(),
+                    };
+                }
+                let half = (scene_size.0.div_ceil(2), scene_size.1.div_ceil(2));
+                if is_half {
+                    (settings.width, settings.height) = half;
+                } else if (settings.width, settings.height) == half {
+                    (settings.width, settings.height) = scene_size;
+                }
             }
         }
     });

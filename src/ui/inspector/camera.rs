@@ -9,10 +9,15 @@ use crate::scene::{
     Projection, field_of_view_radians,
 };
 use crate::ui::commands::Command;
+use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
+use crate::ui::menu_entry::on_click;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, FieldRows, coordinate};
 use crate::ui::theme::ROW;
+
+/// Roll in degrees below which only rounding is left of it.
+const MIN_ROLL: f64 = 1e-9;
 
 /// Shows every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -34,9 +39,25 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         &mut camera.up,
     );
     let changed = rows.changed();
-    if ui.button("Reset to the demo's camera").clicked() {
-        return out.edit(Edit::Camera(defaults, "reset"));
-    }
+    ui.horizontal(|ui| {
+        let frame = ui.button("Frame everything");
+        let hint = "Move the camera so that all of the scene is in the picture";
+        on_click(ui, frame, (hint, Command::FrameAll), out);
+        let angles = editor.orientation();
+        let is_level = angles.roll.to_degrees().abs() < MIN_ROLL;
+        let level = ui.add_enabled(!is_level, egui::Button::new("Level"));
+        let obstacle = is_level.then_some("its roll is 0");
+        if level
+            .hint_unless(obstacle, "Turn the camera upright")
+            .clicked()
+        {
+            let upright = Orientation {
+                roll: 0.0,
+                ..angles
+            };
+            out.edit(Edit::Camera(upright.apply(before), "roll"));
+        }
+    });
     if camera.projection != before.projection {
         // As with the keyboard commands, which keep the apparent size of things.
         out.commands.push(Command::Projection(camera.projection));

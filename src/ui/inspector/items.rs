@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::title::title_field;
 use crate::editor::{Edit, Item, ItemKind, marker_radius};
 use crate::scene::{
-    self, ColorPack, LightObj, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR, MAX_SEPARATED,
-    PropertyValue, Scene, Shape, default_intensity,
+    self, ColorPack, Light, LightObj, List, MAX_COORDINATE, MAX_EXPONENT, MAX_FACTOR,
+    MAX_SEPARATED, Object, PropertyValue, Scene, Shape, default_intensity,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
@@ -244,17 +244,21 @@ fn mesh_tools(rows: &mut FieldRows, shape: &Shape, out: &mut UiRequests) {
     }
 }
 
-/// Counts the users of a color pack. This visits every object; a drag cannot change the count, so it is not
-/// repeated while a button is down.
+/// Counts the users of a color pack. This visits every object, so it is repeated only when they have changed; a drag
+/// cannot change the count.
 fn count_users(ui: &Ui, scene: &Scene, name: &str) -> usize {
     let id = Id::unique(("users of a pack", name));
-    let cached = ui.data(|data| data.get_temp::<(usize, usize)>(id));
+    let cached = ui.data(|data| data.get_temp::<(List<Object>, List<Light>, usize)>(id));
     let is_dragging = ui.input(|input| input.pointer.any_down());
+    let (objects, lights) = (&scene.objects, &scene.lights);
     match cached {
-        Some((objects, users)) if is_dragging && objects == scene.objects.len() => users,
+        Some((counted, _, users)) if is_dragging && counted.len() == objects.len() => users,
+        Some((counted, shining, users)) if counted.is_same(objects) && shining.is_same(lights) => {
+            users
+        }
         _ => {
             let users = Item::users_of_pack(scene, name).count();
-            ui.data_mut(|data| data.insert_temp(id, (scene.objects.len(), users)));
+            ui.data_mut(|data| data.insert_temp(id, (objects.clone(), lights.clone(), users)));
             users
         }
     }

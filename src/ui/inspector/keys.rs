@@ -11,7 +11,7 @@ use super::title::{differing, list_differing, title};
 use crate::editor::{Action, Edit, Editor, Item, ItemKind, Time};
 use crate::scene::{
     Animation, Easing, Interpolation, KeyId, Keys, MAX_SECONDS, Orientation, Owners, Scene, Shape,
-    Target, Value, format_number,
+    Target, Value,
 };
 use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
@@ -40,9 +40,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let name = if let Some(only) = only {
         animation.name_of(only)
     } else {
-        // To the millisecond, finer than anyone sets them.
-        let span = ((last - time) * 1e3).round() / 1e3;
-        format!("{} keys in {} s", places.len(), format_number(span))
+        counted(places.len(), "key")
     };
     title(ui, icons::KEY, &name);
     let paces = places
@@ -60,6 +58,11 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let (mut new_time, mut new_pace) = (time, pace);
     let mut rows = FieldRows::new(ui);
     rows.number(&time_field(only.is_some()), &mut new_time);
+    let (duration, mut new_duration) = (last - time, last - time);
+    if duration > 0.0 {
+        let field = duration_field(animation.frames_per_second);
+        rows.number(&field, &mut new_duration);
+    }
     interpolation_rows(&mut rows, editor, &mut new_pace);
     let new_value = only.and_then(|only| value_rows(&mut rows, animation, only));
     // With several keys, choosing the shown interpolation or easing again applies it to those that differ.
@@ -69,7 +72,16 @@ pub fn show(ui: &mut Ui, editor: &Editor, places: &Keys, out: &mut UiRequests) {
     let changed = rows.changed().or(chosen);
     ui.horizontal_wrapped(|ui| buttons(ui, editor, out));
     if new_time != time {
-        move_key(ui, editor, new_time, out);
+        retime(ui, editor, out, |before| {
+            let offset = new_time - before.time;
+            before.animation.with_moved(&before.places, offset, false)
+        });
+    } else if new_duration != duration {
+        retime(ui, editor, out, |before| {
+            before
+                .animation
+                .with_stretched(&before.places, new_duration)
+        });
     } else if let Some(value) = new_value {
         out.edit(Edit::animation(value, "Key: value"));
     } else if new_pace != pace || only.is_none() && changed.is_some() {
@@ -142,8 +154,13 @@ struct BeforeMove {
     time: f64,
 }
 
-/// Moves the selected keys so that the earliest of them is at `new_time`.
-fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
+/// Moves the selected keys as `change` does it from the state before the drag.
+fn retime(
+    ui: &Ui,
+    editor: &Editor,
+    out: &mut UiRequests,
+    change: impl FnOnce(&BeforeMove) -> (Animation, Keys),
+) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
     let Some((time, _)) = animation.span_of(places) else {
@@ -156,8 +173,7 @@ fn move_key(ui: &Ui, editor: &Editor, new_time: f64, out: &mut UiRequests) {
     };
     // Also stored for a typed time, which is reported on in the next frame.
     let before = ui.data_mut(|data| data.get_temp_mut_or_insert_with(drag_id(), current).clone());
-    let offset = new_time - before.time;
-    let (moved, new) = before.animation.with_moved(&before.places, offset, false);
+    let (moved, new) = change(&before);
     out.edit(Edit::animation(moved, "Key: time"));
     out.select(new);
 }
@@ -189,6 +205,17 @@ fn time_field(is_only: bool) -> Field {
         unit: " s",
         default: 0.0,
         range: 0.0..=MAX_SECONDS,
+        speed: Some(0.02),
+    }
+}
+
+fn duration_field(frames_per_second: f64) -> Field {
+    Field {
+        name: "duration",
+        hint: "Seconds from the first to the last of them; those between keep their shares of it",
+        unit: " s",
+        default: 1.0,
+        range: 1.0 / frames_per_second..=MAX_SECONDS,
         speed: Some(0.02),
     }
 }

@@ -33,14 +33,15 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
     let Some(&last) = selected.last() else { return };
     list_differing(ui, &differences(scene, selected, last));
     let name = last.name(scene).unwrap_or_default();
-    let moves = if group.is_some() {
-        "position, rotation and scale are those of the group"
+    ui.weak(if group.is_some() {
+        format!(
+            "These are the values of {name}. Changing its place, rotation or scale changes that of the whole group; any other change applies to all that have the property."
+        )
     } else {
-        "dragging a position moves them together"
-    };
-    ui.weak(format!(
-        "These are the values of {name}. A change applies to all items that have the property; {moves}."
-    ));
+        format!(
+            "These are the values of {name}. A change applies to all items that have the property; dragging a position moves them together."
+        )
+    });
     let obstacle = obstacle(&Command::Join, editor);
     let join = ui.add_enabled(obstacle.is_none(), egui::Button::new("Join"));
     let hint =

@@ -13,7 +13,7 @@ use crate::ui::theme::GRID;
 /// Shows the needs of the scene; they are determined when the section is opened, and again on every edit while it
 /// is open.
 pub fn show(ui: &mut Ui, editor: &Editor, choice: Option<&Choice>) {
-    let header = CollapsingHeader::new("Needs").id_salt("needs");
+    let header = CollapsingHeader::new("What the scene needs").id_salt("needs");
     let response = header.show(ui, |ui| {
         for need in lines(ui, editor).iter() {
             ui.add_space(GRID / 2.0);

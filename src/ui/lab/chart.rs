@@ -351,8 +351,11 @@ impl Chart {
         let HoverPosition::NearDataPoint { plot_name, .. } = hover else {
             return None;
         };
-        let spot = self.spots.iter().find(|spot| spot.name == *plot_name);
-        spot.map(|spot| format!("{}\n{}", spot.name, spot.tooltip))
+        let mut spots = self.spots.iter().enumerate();
+        let (index, spot) = spots.find(|(_, spot)| spot.name == *plot_name)?;
+        // The panel beside the chart shows the selected one.
+        let is_told = self.chosen == Some(index);
+        (!is_told).then(|| format!("{}\n{}", spot.name, spot.tooltip))
     }
 }
 

@@ -125,6 +125,7 @@ impl Lab {
 
     fn show_bounds(&mut self, ui: &mut Ui) {
         let costs = self.study.as_deref().map(costs_of_choices);
+        let costs = costs.filter(|costs| costs.iter().any(|(_, error)| error.is_finite()));
         // Keeps each button with its limit when the row wraps, which a nested row does not do by itself.
         let mut limit = |words: &str, hint: &str, (field, value): (&Field, &mut f64)| {
             let id = Id::unique(words);

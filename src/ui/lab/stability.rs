@@ -82,7 +82,12 @@ impl Stability {
 
     fn fetch(&mut self, ui: &mut Ui) {
         match self.pending.take() {
-            Some(Ok(maps)) => self.maps = maps,
+            Some(Ok(maps)) => {
+                // The first shows what a failure looks like.
+                let failing = maps.iter().position(|map| map.total().failures > 0);
+                self.chosen = failing.unwrap_or_default();
+                self.maps = maps;
+            }
             Some(Err(_)) => self.has_failed = true,
             None if !self.pending.is_awaited() && !self.has_failed => {
                 self.pending = Background::start("glint-stability", || maps(EFFORT));

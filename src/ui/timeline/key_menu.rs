@@ -4,10 +4,11 @@ use egui::Ui;
 
 use crate::editor::{Edit, Editor};
 use crate::scene::{Easing, KeyId};
+use crate::ui::commands::Command;
 use crate::ui::inspector::interpolations_for;
 use crate::ui::requests::UiRequests;
 
-/// Shows entries for interpolation, easing and deletion of the selected keys, one of which is at `place`.
+/// Shows entries for interpolation and easing of the selected keys, for copies and for deletion of them, one of which is at `place`.
 pub fn menu(ui: &mut Ui, place: KeyId, editor: &Editor, out: &mut UiRequests) {
     let animation = &editor.scene().animation;
     let places = editor.selection().keys();
@@ -30,6 +31,9 @@ pub fn menu(ui: &mut Ui, place: KeyId, editor: &Editor, out: &mut UiRequests) {
         }
     }
     ui.separator();
+    if ui.button("Duplicate to the playhead").clicked() {
+        out.commands.push(Command::Duplicate);
+    }
     if ui.button("Delete").clicked() {
         // Keys only: an undo while the menu is open may have changed the selection to something else.
         out.edit(Edit::delete_keys(animation, places));

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use egui::{PointerButton, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
 
 use super::key_menu::menu;
-use super::ruler::playhead;
 use super::scale::Scale;
 use super::strip::{KEY_HALF_WIDTH, band, diamond, dragged_keys, label, selection_after_click};
 use crate::editor::{Action, Edit, Editor, Selection};
@@ -178,7 +177,6 @@ impl KeyRows {
         }
         label_response.hint(format!("{name}\nClick to select its keys"));
         draw_segments(ui, scale, rect, keys);
-        playhead(ui, scale, rect, editor);
         // Of keys at the same place on the screen, only one is shown and can be grabbed: there may be a hundred
         // thousand.
         let selected = editor.selection().keys();

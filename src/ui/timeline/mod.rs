@@ -112,7 +112,7 @@ impl TimelinePanel {
             });
             return;
         }
-        let end = shown_end(animation, editor.timeline().playhead);
+        let end = shown_end(animation, editor.shown_time());
         self.zoomed = self.zoomed.filter(|(_, last)| *last <= end * MAX_ZOOM_OUT);
         if self.zoomed.is_some() || !ui.input(|input| input.pointer.any_down()) {
             self.span = self.zoomed.unwrap_or((0.0, end));
@@ -132,7 +132,7 @@ impl TimelinePanel {
         }
         // The ruler stays visible when many rows are scrolled.
         ruler::show(ui, &scale, editor, out);
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let shown = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             if !animation.keys.is_empty() {
                 thumbs.show(ui, &scale, animation);
             }
@@ -142,6 +142,7 @@ impl TimelinePanel {
             }
             self.rows.show_space_below(ui, editor, out);
         });
+        ruler::playhead(ui, &scale, shown.inner_rect, editor);
     }
 
     /// Resets the zoom to show everything.

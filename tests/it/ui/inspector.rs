@@ -106,6 +106,27 @@ fn invalid_edits_are_refused_and_explained() {
 }
 
 #[test]
+fn a_double_click_selects_a_number_as_a_whole() {
+    let mut harness = EditorHarness::new();
+    harness.click("Light 1");
+    let field = harness
+        .window
+        .get_by_role_and_label(Role::SpinButton, "intensity");
+    let at = field.rect().center();
+    (0..60).for_each(|_| harness.window.step());
+    for _ in 0..2 {
+        harness.window.drag_at(at);
+        harness.window.step();
+        harness.window.drop_at(at);
+        harness.window.step();
+    }
+    harness.settle();
+    harness.type_text("0.55");
+    harness.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(harness.scene().lights[0].intensity, 0.55);
+}
+
+#[test]
 fn escape_in_a_field_gives_up_what_was_typed_and_nothing_else() {
     let mut harness = EditorHarness::new();
     harness.click("Sphere 1");
@@ -135,7 +156,7 @@ fn a_label_brings_the_default_back() {
 #[test]
 fn the_inspector_says_what_the_scene_needs() {
     let mut harness = EditorHarness::new();
-    harness.click("Needs");
+    harness.click("What the scene needs");
     harness
         .window
         .get_by_label("reflected rays, up to 1 bounce");
@@ -159,7 +180,7 @@ fn a_quality_is_chosen_by_measuring_and_needs_tells_why() {
     // Whichever is cheapest today, the default is far more accurate than required.
     assert_ne!(harness.scene().render.antialias, Sampling::default());
     assert_eq!(harness.editor().undo_label(), Some("Render: quality"));
-    harness.click("Needs");
+    harness.click("What the scene needs");
     harness.assert_says("the cheapest within 50.0 dB");
     harness.press(CTRL, Key::Z);
     assert_eq!(harness.scene(), &small);
