@@ -10,7 +10,7 @@ use super::geometry::Geometry;
 use super::plane_occluders::PlaneOccluder;
 use super::request::Model;
 use crate::primitive::roundings;
-use crate::scene::{Scene, Shape, unit};
+use crate::scene::{Light, Scene, Shape, unit};
 use crate::simd::{Real, Vec3};
 
 /// A point light.
@@ -22,6 +22,8 @@ pub struct PointLight<R> {
     pub world_position: DVec3,
     /// > 0.
     pub intensity: R,
+    /// The sum with those of all lights around it whose shadows have the same edges: by so much an edge shows.
+    pub edge_intensity: R,
     /// For each triangle, whether others cast all of its shadow; empty if no such triangles are known.
     pub shadow_culled_faces: Vec<bool>,
     /// For each mesh of the geometry, the faces that shadow rays skip, if any are known: those that contain the
@@ -80,6 +82,33 @@ impl<R: Real> PointLight<R> {
     }
 }
 
+/// Distance of two lights, as a share of the scene's extent, up to which the edges of their shadows fall together.
+const SAME_SHADOWS: f64 = 0.01;
+
+/// Returns for each light the sum of the intensities of the visible lights around it, and of its own.
+fn edge_intensities(scene: &Scene) -> Vec<f64> {
+    let extent = scene
+        .surroundings()
+        .map_or(0.0, |(low, high)| low.distance(high));
+    let lights = scene.lights.iter().enumerate();
+    let shining = lights.filter(|(_, light)| light.visible);
+    let mut shining: Vec<(usize, &Light)> = shining.collect();
+    shining.sort_by(|(_, one), (_, other)| one.position.x.total_cmp(&other.position.x));
+    let mut sums: Vec<f64> = scene.lights.iter().map(|light| light.intensity).collect();
+    let near = SAME_SHADOWS * extent;
+    for (rank, (index, one)) in shining.iter().enumerate() {
+        let others = shining[rank + 1..].iter();
+        let beside = others.take_while(|(_, other)| other.position.x - one.position.x <= near);
+        for (other, light) in
+            beside.filter(|(_, light)| light.position.distance(one.position) <= near)
+        {
+            sums[*index] += light.intensity;
+            sums[*other] += one.intensity;
+        }
+    }
+    sums
+}
+
 /// Packs the lights that shine on what the eye can reach. `number` returns the number of the primitive of an object, if
 /// that is in contact with something and not in the tree.
 pub fn pack_lights<R: Real>(
@@ -91,6 +120,7 @@ pub fn pack_lights<R: Real>(
     number: impl Fn(&usize) -> Option<usize>,
 ) -> Vec<PointLight<R>> {
     let all = model == Model::Everything;
+    let edge_intensities = edge_intensities(scene);
     // Whether a light is in the plane of any face of a mesh is unknown.
     let has_meshes = scene.faces() > 0 && !all;
     let lights = scene.lights.iter().enumerate();
@@ -114,6 +144,7 @@ pub fn pack_lights<R: Real>(
                 position,
                 world_position: light.position,
                 intensity: R::from_f64(light.intensity),
+                edge_intensity: R::from_f64(edge_intensities[index]),
                 shadow_culled_faces: Vec::new(),
                 culled_faces: Vec::new(),
                 holders: flat.chain(&ball).filter_map(&number).collect(),

@@ -65,7 +65,7 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
         }
     }
 
-    /// Returns where a light is bright enough to be seen, be it only in its highlight. Given are the cosine between
+    /// Returns where a light, with those around it, is bright enough to be seen, be it only in its highlight. Given are the cosine between
     /// normal and direction to the light, the normal, and a vector halfway between the directions to the light and
     /// to the viewer.
     ///
@@ -98,7 +98,7 @@ impl<L: SimdFloat> HitMaterial<'_, L> {
                 };
                 cosine
                     .like_f64(EDGE_CONTRAST)
-                    .less(glow * cosine.like(light.intensity))
+                    .less(glow * cosine.like(light.edge_intensity))
             },
         )
     }

@@ -366,7 +366,7 @@ impl<L: SimdFloat, const TREE: bool> Shader<'_, L, TREE> {
                 let unshadowed = facing & !blocked.by_thick;
                 // If the light itself is not visible there, its shadow is not either.
                 let brightness = point.material.brightness(kernel.plan, zero);
-                let brightest = brightness * zero.like(light.intensity);
+                let brightest = brightness * zero.like(light.edge_intensity);
                 let mut visible = kernel.splat(EDGE_CONTRAST).less(cosine * brightest);
                 let dim = unshadowed & lit_side & !visible;
                 if dim.any() {
