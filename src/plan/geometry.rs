@@ -347,6 +347,13 @@ impl<R: Real> Geometry<R> {
         coarse.chain(meshes.filter(move |_| is_fine))
     }
 
+    /// Returns whether there are primitives besides meshes, or several meshes or unconnected parts of one.
+    pub fn is_of_several(&self) -> bool {
+        !self.primitives.is_empty()
+            || self.meshes.len() > 1
+            || self.meshes.iter().any(|instance| instance.mesh.has_parts())
+    }
+
     /// The number of primitives, including triangles of meshes.
     pub fn len(&self) -> usize {
         let last = self.meshes.last();

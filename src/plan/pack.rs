@@ -284,6 +284,12 @@ impl<R: Real> Plan<R> {
         Some((geometry, self.primitives.len()))
     }
 
+    /// The number of the first face of a mesh; no primitive has a greater one if there are no meshes.
+    pub fn first_of_meshes(&self) -> usize {
+        let in_tree = self.geometry.as_ref();
+        self.primitives.len() + in_tree.map_or(0, |geometry| geometry.primitives.len())
+    }
+
     /// The number of bounded primitives.
     pub fn bounded(&self) -> usize {
         let in_tree = self.geometry.as_ref().map_or(0, |all| all.len());

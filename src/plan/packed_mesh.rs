@@ -283,6 +283,11 @@ impl<R: Real> PackedMesh<R> {
         }
     }
 
+    /// Returns whether not all faces are connected.
+    pub fn has_parts(&self) -> bool {
+        !self.component_firsts.is_empty()
+    }
+
     /// The first face of the connected component of `face`.
     pub fn component_of(&self, face: usize) -> usize {
         self.component_firsts

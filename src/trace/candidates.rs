@@ -112,16 +112,15 @@ impl Candidates {
         !self.has_geometry && self.lists.iter().all(Vec::is_empty)
     }
 
-    /// Returns how many candidates may have outlines of their own, see [`Primitive::has_outline`]: 0, 1, or 2 for
-    /// two or more.
+    /// Returns how many candidates may have outlines of their own, see [`Primitive::has_outline`], or are meshes: 0, 1,
+    /// or 2 for two or more.
     pub fn outline_count<R: Real>(&self, plan: &Plan<R>) -> usize {
         let all = &plan.primitives.triangles;
         let triangles = self.of(Kind::Triangle).iter();
         let loose = triangles.filter(|&&index| all[index as usize].has_outline());
         let round = self.of(Kind::Sphere).len() + self.of(Kind::Disc).len();
-        // Meshes have none.
         let in_tree = plan.geometry.as_ref().filter(|_| self.has_geometry);
-        if in_tree.is_some_and(|geometry| !geometry.primitives.is_empty()) {
+        if in_tree.is_some_and(|geometry| geometry.is_of_several()) {
             return 2;
         }
         (round + loose.take(2).count()).min(2)

@@ -1,17 +1,19 @@
-//! Shadows that hits are in and that end nearby: between two of these, there may be light or none.
+//! Shadows that hits are in and that end nearby: between two of these, there may be light or none. Where those of meshes
+//! end is not known: all of them count.
 
 use super::candidates::Targets;
 use super::cull::LightCandidates;
 use super::footprint::Footprint;
 use super::hit_material::HitMaterial;
 use super::intersect::Kernel;
+use super::outcome::component_of;
 use super::paths::Paths;
 use super::scan::{Test, scan_lists};
 use super::shadows::{mark_of, weight_of};
 use super::surface::Hit;
 use super::walk::Stack;
+use crate::plan::Plan;
 use crate::primitive::{Blur, Primitive};
-use crate::scene::Methods;
 use crate::simd::{MAX_LANES, Mask as _, Real, SimdFloat, Vec3};
 
 impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
@@ -77,7 +79,8 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
                         culled_faces: &light.culled_faces,
                     };
                     let test = DepthTest {
-                        methods: &self.plan.methods,
+                        plan: self.plan,
+                        first_of_meshes: self.plan.first_of_meshes(),
                         distance,
                         full_depth: footprint.full_shadow_depth(),
                         open_lanes: dark_lanes,
@@ -126,7 +129,9 @@ impl<L: SimdFloat, const TREE: bool> Kernel<'_, L, TREE> {
 
 /// Looks for the caster inside whose outline the paths pass deepest.
 struct DepthTest<'a, L: SimdFloat> {
-    methods: &'a Methods,
+    plan: &'a Plan<L::Real>,
+    /// Number of the first face of a mesh.
+    first_of_meshes: usize,
     /// Length of the paths.
     distance: L,
     /// Depth inside an outline beyond which the caster hides the whole pixel.
@@ -157,16 +162,25 @@ impl<L: SimdFloat> Test<L> for DepthTest<'_, L> {
         paths: &Paths<L>,
         number: usize,
     ) {
-        let t = paths.distance::<false, P>(primitive, prepared, number, self.methods);
+        let t = paths.distance::<false, P>(primitive, prepared, number, &self.plan.methods);
         let is_met = self.open_lanes & t.less(self.distance);
         if !is_met.any() {
             return;
         }
-        let Some(depth) = depth(primitive, prepared, paths) else {
-            self.open_lanes = self.open_lanes & !is_met;
-            return;
+        let (depth, caster) = match depth(primitive, prepared, paths) {
+            Some(depth) => (depth, number),
+            // No face knows how far it is to the outline of a mesh. Of several meshes, the one with the least mark
+            // counts, so that marks change only along its outline.
+            None if self.first_of_meshes <= number => {
+                let outermost = self.distance.like_f64(0.0);
+                (outermost, component_of(self.plan, number))
+            }
+            None => {
+                self.open_lanes = self.open_lanes & !is_met;
+                return;
+            }
         };
-        let mark = depth.like_f64(mark_of(number));
+        let mark = depth.like_f64(mark_of(caster));
         let is_first = self.caster.less(depth.like(L::Real::ONE));
         let is_equal = depth.same(self.deepest) & mark.less(self.caster);
         let deeper = is_met & (is_first | self.deepest.less(depth) | is_equal);

@@ -255,8 +255,7 @@ impl<R: Real> Lattice<R> {
             return Inside::Known;
         }
         let [a, b, c, d] = self.corners(cell);
-        let diff =
-            (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
+        let diff = differing_bits([a, b, c, d]);
         let is_one = diff == 0;
         if (is_one || MIN_THIN_SIDE <= cell.side) && self.is_near_thin(cell) {
             return Inside::Anything;
@@ -295,9 +294,7 @@ impl<R: Real> Lattice<R> {
 
     /// Returns whether the corners of a cell see different things, or colours that differ by more than allowed.
     pub fn differs(&self, cell: &Cell, limits: Limits<R>) -> bool {
-        let [a, b, c, d] = self.corners(cell);
-        let diff =
-            (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature);
+        let diff = differing_bits(self.corners(cell));
         diff & OBJECT_BITS != 0 || self.has_contrast(cell, (limits, diff == 0))
     }
 
@@ -312,8 +309,7 @@ impl<R: Real> Lattice<R> {
 
     /// Requests a sample in the middle of a cell and returns its index.
     pub fn request_middle(&mut self, cell: &Cell) -> u32 {
-        let half = cell.side / 2;
-        self.request(cell.x + half, cell.y + half)
+        self.request(cell.x + cell.side / 2, cell.y + cell.side / 2)
     }
 
     /// Adds the colour of a cell whose corners see the same to its pixel, if the colour changes evenly: the middle
@@ -393,6 +389,12 @@ impl<R: Real> Lattice<R> {
             quarter(middle, centre, [inside, behind, below, d]),
         ]);
     }
+}
+
+/// Returns the bits of the signatures in which the corners of a cell differ.
+#[inline(always)]
+fn differing_bits<R>([a, b, c, d]: [&CornerSample<R>; 4]) -> u32 {
+    (a.signature ^ b.signature) | (a.signature ^ c.signature) | (a.signature ^ d.signature)
 }
 
 #[cfg(test)]

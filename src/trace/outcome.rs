@@ -70,7 +70,7 @@ fn object_of<R: Real>(plan: &Plan<R>, number: R) -> u32 {
 /// Returns the number of the first primitive of the thing that a primitive belongs to. Not inlined: in the kernels,
 /// it would slow down the clean edges of the demo, which does not need it, by a tenth.
 #[inline(never)]
-fn component_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
+pub fn component_of<R: Real>(plan: &Plan<R>, number: usize) -> usize {
     let in_tree = plan.numbered_geometry().and_then(|(geometry, first)| {
         let index = number.checked_sub(first)?;
         let component = match geometry.mesh_of(index) {
