@@ -18,7 +18,7 @@ use crate::ui::commands::take_escape;
 use crate::words::quoted;
 
 /// Angle in degrees below which nothing but rounding is left of it.
-const ROUNDED_ANGLE: f64 = 1e-9;
+pub const ROUNDED_ANGLE: f64 = 1e-9;
 /// Characters that fit into one of three fields in a row.
 const NARROW_CHARS: usize = 7;
 /// The lower end of a range, if below this, only means that numbers must be above 0.

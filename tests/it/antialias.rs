@@ -801,35 +801,19 @@ fn gaps_between_things_of_one_colour_are_seen() {
 /// wide.
 fn boxes_side_by_side(is_one_mesh: bool) -> Scene {
     let mut scene = lamp_over_floor();
-    let corners = |front: f64, back: f64| {
-        let side = move |bit: u32, n: u32, low, high| if n >> bit & 1 == 0 { low } else { high };
-        let corner = move |n| {
-            DVec3::new(
-                side(0, n, -1.0, 1.0),
-                side(1, n, 2.1, 2.3),
-                side(2, n, front, back),
-            )
-        };
-        (0..8).map(corner)
-    };
-    let sides = [
-        [0, 1, 3, 2],
-        [4, 6, 7, 5],
-        [0, 4, 5, 1],
-        [2, 3, 7, 6],
-        [0, 2, 6, 4],
-        [1, 5, 7, 3],
-    ];
-    let faces_from = |first: u32| {
-        let faces = sides
-            .into_iter()
-            .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        faces.map(move |face| face.map(|corner| corner + first))
-    };
+    let cube = (SOLIDS[0].make)(1.0);
     let boxes = [(-0.39, 0.57), (0.61, 1.57)];
     for group in boxes.chunks(if is_one_mesh { 2 } else { 1 }) {
-        let points = group.iter().flat_map(|&(front, back)| corners(front, back));
-        let faces = (0..group.len() as u32).flat_map(|n| faces_from(8 * n));
+        let points = group.iter().flat_map(|&(front, back): &(f64, f64)| {
+            let size = DVec3::new(2.0, 0.2, back - front);
+            let middle = DVec3::new(0.0, 2.2, front.midpoint(back));
+            cube.points().iter().map(move |point| middle + size * point)
+        });
+        let faces = (0..group.len() as u32).flat_map(|n| {
+            let first = n * cube.points().len() as u32;
+            let faces = cube.faces().iter();
+            faces.map(move |face| face.map(|corner| corner + first))
+        });
         let triangles = Triangles::new(points.collect(), faces.collect()).expect("boxes");
         let name = format!("Box at {}", group[0].0);
         let mesh = Object::new(name, "plane", Mesh::of(triangles));

@@ -12,12 +12,10 @@ use crate::ui::commands::Command;
 use crate::ui::hint::Hinted as _;
 use crate::ui::icons;
 use crate::ui::menu_entry::on_click;
+use crate::ui::number::ROUNDED_ANGLE;
 use crate::ui::requests::UiRequests;
 use crate::ui::rows::{Field, FieldRows, coordinate};
 use crate::ui::theme::ROW;
-
-/// Roll in degrees below which only rounding is left of it.
-const MIN_ROLL: f64 = 1e-9;
 
 /// Shows every property of the camera.
 pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
@@ -44,7 +42,7 @@ pub fn show(ui: &mut Ui, editor: &Editor, out: &mut UiRequests) {
         let hint = "Move the camera so that all of the scene is in the picture";
         on_click(ui, frame, (hint, Command::FrameAll), out);
         let angles = editor.orientation();
-        let is_level = angles.roll.to_degrees().abs() < MIN_ROLL;
+        let is_level = angles.roll.to_degrees().abs() < ROUNDED_ANGLE;
         let level = ui.add_enabled(!is_level, egui::Button::new("Level"));
         let obstacle = is_level.then_some("its roll is 0");
         if level
