@@ -8,7 +8,7 @@ use super::control::RenderControl;
 use super::engine::{Engine, Retracer, Workspace};
 use super::heat::heat;
 use super::intersect::Kernel;
-use super::lattice::Limits;
+use super::limits::Limits;
 use super::messages::BandMessages;
 use super::sampler::Sampler;
 use super::stats::Rays;

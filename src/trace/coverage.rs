@@ -3,7 +3,8 @@
 
 use super::cell::Cell;
 use super::crossing::{Crossing, EdgeSide, contrast};
-use super::lattice::{CornerSample, Lattice, Limits};
+use super::lattice::{CornerSample, Lattice};
+use super::limits::Limits;
 use super::samples::OBJECT_BITS;
 use super::thresholds::{EDGE_ERROR, GAP_CONTRAST, PIXEL_STEPS, UNEVEN};
 use super::tile::TileColors;

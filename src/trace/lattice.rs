@@ -1,13 +1,13 @@
-//! The samples that the pixels of a tile share, and the limits above which a cell between them is subdivided.
+//! The samples that the pixels of a tile share, and what those at the corners of a cell tell about its inside.
 
 use super::cell::Cell;
 use super::faces::may_hide_light;
+use super::limits::Limits;
 use super::points::PointTable;
 use super::samples::{EdgeDetail, OBJECT_BITS, Samples, Traced};
-use super::shadows::{may_leave_gap, may_swap_lights};
-use super::thresholds::{EDGE_ERROR, FARTHEST_CORNER, MAX_TWIST, PIXEL_STEPS, SPREAD_OUT, UNEVEN};
+use super::shadows::{DIRECT_MARKS, may_border_gap, may_leave_gap, may_swap_lights};
+use super::thresholds::{FARTHEST_CORNER, MAX_TWIST, PIXEL_STEPS, UNEVEN};
 use super::tile::{Tile, TileColors};
-use crate::scene::MAX_HALVINGS;
 use crate::simd::{Real, SimdFloat};
 
 /// Side of the smallest cells, in steps of the finest grid, that are searched for thin things although their corners
@@ -69,70 +69,6 @@ pub enum Inside {
 #[inline(always)]
 pub fn range<L: SimdFloat>(a: L, b: L, c: L, d: L) -> L {
     a.max(b).max(c.max(d)) - a.min(b).min(c.min(d))
-}
-
-/// The limits above which cells are subdivided.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits<R> {
-    /// Difference between the corners of a cell, summed over the channels, above which it is subdivided.
-    contrast: R,
-    /// The same for corners that see different things, times the side of the cell in pixels.
-    edge_contrast: R,
-    /// How often a pixel is subdivided, not counting the last time.
-    depth: u32,
-}
-
-impl<R: Real> Limits<R> {
-    /// Creates limits from the contrast for cells whose corners see the same, and the depth.
-    pub fn new(contrast: f64, depth: u32) -> Self {
-        Self {
-            contrast: R::from_f64(contrast),
-            edge_contrast: R::from_f64(contrast.min(EDGE_ERROR)),
-            depth: depth.min(MAX_HALVINGS),
-        }
-    }
-
-    /// Returns the limits for cells of a side in pixels: the smaller they are, the more their corners may differ.
-    #[inline(always)]
-    fn at(self, side: R) -> Self {
-        let edge_contrast = self.edge_contrast / side;
-        Self {
-            contrast: self.contrast.max(edge_contrast),
-            edge_contrast,
-            ..self
-        }
-    }
-
-    /// Returns the side of the smallest cells, in steps of the finest grid.
-    pub fn least_side(self) -> u16 {
-        (PIXEL_STEPS >> (self.depth + 1)) as u16
-    }
-
-    /// Returns how many samples are taken in a pixel that is too crowded to be divided, and the step between them,
-    /// see [`SPREAD_OUT`].
-    pub fn spread_out(self) -> (usize, usize) {
-        let cells = PIXEL_STEPS / usize::from(self.least_side());
-        let mut lattices = SPREAD_OUT.iter();
-        let lattice = lattices.find(|(side, _)| *side <= cells);
-        lattice.map_or((1, 1), |(_, lattice)| *lattice)
-    }
-
-    /// Returns the contrast above which a cell whose corners see the same is subdivided, by its side in pixels.
-    pub fn contrast_of_same(self, side: f64) -> R {
-        self.at(R::from_f64(side)).contrast(true)
-    }
-
-    /// Returns the contrast of a cell's corners above which its inside must be examined, by whether they see the
-    /// same. Near something thin it must be examined at any contrast: corners tell nothing about what passes between
-    /// them, whether they see the same thing, others of the same kind, or neither.
-    #[inline(always)]
-    pub fn contrast(self, is_same: bool) -> R {
-        if is_same {
-            self.contrast
-        } else {
-            self.edge_contrast
-        }
-    }
 }
 
 impl<R: Real> Lattice<R> {
@@ -248,6 +184,30 @@ impl<R: Real> Lattice<R> {
         cell.detail == EdgeDetail::Thin && least < R::from_f64(FARTHEST_CORNER * cell.width())
     }
 
+    /// Returns whether the first samples taken show a shadow that ends near them.
+    pub fn has_shadows(&self) -> bool {
+        self.samples.iter().any(|sample| sample.shadows != 0)
+    }
+
+    /// Returns whether light may pass between the shadows at the corners of a cell where none of them or not all see
+    /// it. In parts of pixels, only what is seen directly counts: which shadows in mirrors are noted at their corners
+    /// depends on which samples were traced together.
+    #[inline(always)]
+    pub fn may_leave_gap(&self, cell: &Cell) -> bool {
+        let [a, b, c, d] = self.corners(cell);
+        let is_pixel = usize::from(cell.side) == PIXEL_STEPS;
+        let marks = if is_pixel { !0 } else { DIRECT_MARKS };
+        let shadows = [
+            a.shadows & marks,
+            b.shadows & marks,
+            c.shadows & marks,
+            d.shadows & marks,
+        ];
+        let is_one = differing_bits([a, b, c, d]) == 0;
+        EdgeDetail::Borders <= cell.detail
+            && (is_one && may_leave_gap(shadows) || !is_one && may_border_gap(shadows))
+    }
+
     /// Returns what the corners of a cell tell about its inside.
     #[inline(always)]
     pub fn inside(&self, cell: &Cell, limits: Limits<R>) -> Inside {
@@ -260,10 +220,7 @@ impl<R: Real> Lattice<R> {
         if (is_one || MIN_THIN_SIDE <= cell.side) && self.is_near_thin(cell) {
             return Inside::Anything;
         }
-        let shadows = [a.shadows, b.shadows, c.shadows, d.shadows];
-        if cell.may_hide_face
-            || (is_one && EdgeDetail::Borders <= cell.detail && may_leave_gap(shadows))
-        {
+        if cell.may_hide_face || self.may_leave_gap(cell) {
             return Inside::Anything;
         }
         let may_hide =
@@ -299,7 +256,7 @@ impl<R: Real> Lattice<R> {
     }
 
     /// Returns whether light of two lights or of neither may be hidden between the corners of a pixel. Unknown for
-    /// smaller cells: which shadows are noted at their corners depends on which samples were traced together.
+    /// smaller cells, see [`Self::may_leave_gap`].
     #[inline(always)]
     pub fn may_swap_lights(&self, pixel: &Cell) -> bool {
         let [a, b, c, d] = self.corners(pixel);

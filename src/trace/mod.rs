@@ -92,6 +92,8 @@ mod messages;
 
 mod pixel_sides;
 
+mod limits;
+
 mod lattice;
 
 mod crossing;

@@ -3,7 +3,8 @@
 
 use super::cell::Cell;
 use super::coverage::{CellFinding, CrossedCell};
-use super::lattice::{Inside, Lattice, Limits};
+use super::lattice::{Inside, Lattice};
+use super::limits::Limits;
 use super::messages::{ALL, EdgeMessages};
 use super::pixel_sides::PixelSides;
 use super::samples::{EdgeDetail, Samples, Traced};
@@ -11,6 +12,8 @@ use super::thresholds::{MAX_EXCESS, PIXEL_STEPS};
 use super::tile::{Tile, TileColors};
 use crate::simd::Real;
 
+/// Side of the quarters of pixels, in steps of the finest grid.
+const QUARTER_SIDE: u16 = (PIXEL_STEPS / 2) as u16;
 /// Number of parts of a pixel that is divided twice.
 const PARTS: u8 = 16;
 /// A pixel is crowded if all of its parts are to be divided, at least this many of them although their corners do
@@ -135,6 +138,18 @@ impl<R: Real> Refinement<R> {
         });
         for pixel in &mut self.to_divide {
             pixel.detail = EdgeDetail::Borders;
+        }
+    }
+
+    /// Divides the quarters of pixels between whose corners light may pass: it is looked for between the corners of
+    /// their parts once more.
+    #[inline(never)]
+    pub fn divide_gaps(&mut self, limits: Limits<R>) {
+        let (lattice, cells) = (&self.lattice, &mut self.cells);
+        if limits.least_side() < QUARTER_SIDE && lattice.has_shadows() {
+            let gaps = cells.extract_if(.., |cell| lattice.may_leave_gap(cell));
+            self.to_divide.extend(gaps);
+            self.divide();
         }
     }
 

@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::candidates::Candidates;
 use super::engine::Engine;
 use super::faces::may_hide_face;
-use super::lattice::{Limits, range};
+use super::lattice::range;
+use super::limits::Limits;
 use super::messages::EdgeMessages;
 use super::refinement::Refinement;
 use super::samples::{EdgeDetail, OBJECT_BITS, Samples, Traced};
@@ -180,6 +181,8 @@ impl<L: SimdFloat> Sampler<L> {
         self.refinement.divide_near_thin();
         self.trace_requested(engine, candidates, tile, EdgeDetail::Thin);
         self.refinement.divide();
+        self.trace_requested(engine, candidates, tile, EdgeDetail::Borders);
+        self.refinement.divide_gaps(limits);
         self.trace_requested(engine, candidates, tile, EdgeDetail::Borders);
         self.refine(engine, candidates, tile, (limits, messages), colors);
     }

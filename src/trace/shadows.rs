@@ -16,6 +16,8 @@ const SHARED_LIGHT_BITS: usize = 13;
 const MARK_BITS: u32 = 5;
 /// Bits of what is seen directly; those of what is seen in a mirror are above them.
 const DIRECT_BITS: u32 = MARKED_LIGHTS as u32 * MARK_BITS;
+/// The marks of what is seen directly.
+pub const DIRECT_MARKS: u32 = (1 << DIRECT_BITS) - 1;
 
 /// Returns what a light that shines adds to the sum of an edge. The lights whose shadows are noted have powers of two
 /// of their own, below those of all further lights, so that no sum of the latter changes their bits.
@@ -64,6 +66,16 @@ pub fn may_leave_gap([a, b, c, d]: [u32; 4]) -> bool {
         & nonzero_marks(d)
         & nonzero_marks(differing)
         != 0
+}
+
+/// Returns whether some light may shine into a cell between the shadows at two of its corners, while another corner is
+/// lit: two corners are in different shadows that end near them.
+#[inline(always)]
+pub fn may_border_gap([a, b, c, d]: [u32; 4]) -> bool {
+    let differ = |one: u32, other: u32| {
+        nonzero_marks(one) & nonzero_marks(other) & nonzero_marks(one ^ other)
+    };
+    differ(a, b) | differ(a, c) | differ(a, d) | differ(b, c) | differ(b, d) | differ(c, d) != 0
 }
 
 /// Returns whether each of two lights shines at a corner where a shadow of the other ends nearby: between these
@@ -148,7 +160,9 @@ mod tests {
                 assert!(!may_leave_gap(at([Some(0); 4])));
                 assert!(!may_leave_gap(at([last; 4])));
                 assert!(!may_leave_gap(at([None; 4])));
-                assert!(!may_leave_gap(at([Some(0), None, Some(1), Some(2)])), "lit");
+                let beside_light = at([Some(0), None, Some(1), Some(0)]);
+                assert!(!may_leave_gap(beside_light) && may_border_gap(beside_light));
+                assert!(!may_border_gap(at([Some(0), None, Some(0), None])));
             }
         }
         // Each of two lights shines at some corner.
