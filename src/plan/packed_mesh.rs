@@ -16,7 +16,7 @@ use super::components::{first_of_components, six_volumes};
 use super::oriented_box::OrientedBox;
 use super::slices::{entries, slicings};
 use super::smooth::{corner_normals, largest_lift};
-use super::thickness::thicknesses;
+use super::thickness::widths;
 use super::tips::tips;
 use crate::mesh::Triangles;
 use crate::primitive::{BoundingBox, CAUTION, CornerNormals, PackedTriangle, Slicing};
@@ -223,7 +223,7 @@ impl PackedMesh<f64> {
 }
 
 impl<R: Real> PackedMesh<R> {
-    /// Returns the same mesh with another rotation, without determining its components, thickness and tree again.
+    /// Returns the same mesh with another rotation, without determining its components, widths and tree again.
     /// Returns `None` if the original order of its faces is not known, or if rounding leaves a face without an
     /// area.
     pub fn turned(&self, mesh: &Mesh) -> Option<PackedMesh<f64>> {
@@ -237,6 +237,7 @@ impl<R: Real> PackedMesh<R> {
                 triangle.flip();
             }
             triangle.thickness = before.thickness.to_f64();
+            triangle.wider = before.wider.to_f64();
             triangle.tip = before.tip;
             triangle.slicing = before.slicing;
             Some(triangle)
@@ -332,7 +333,7 @@ fn tree(slicings: &[Slicing], faces: usize, corners: impl Fn(usize) -> [Vec3<f64
     bvh
 }
 
-/// Sets the thickness and the tip of each triangle, given their corner numbers, tree and borders, and updates the
+/// Sets the widths and the tip of each triangle, given their corner numbers, tree and borders, and updates the
 /// thicknesses in the tree.
 pub fn measure(
     triangles: &mut [PackedTriangle<f64>],
@@ -340,11 +341,11 @@ pub fn measure(
     bvh: &mut Bvh<f64>,
     borders: &Borders,
 ) {
-    let thicknesses = thicknesses(triangles, bvh, borders);
+    let widths = widths(triangles, bvh, borders);
     let border_faces = borders.widths.iter().map(|&(face, _)| face);
     let tips = tips(triangles, faces, border_faces);
-    for ((triangle, thickness), tip) in triangles.iter_mut().zip(thicknesses).zip(tips) {
-        triangle.thickness = triangle.thickness.max(thickness);
+    for ((triangle, width), tip) in triangles.iter_mut().zip(widths).zip(tips) {
+        (triangle.thickness, triangle.wider) = width.at_least(triangle.thickness);
         triangle.tip = tip;
     }
     bvh.refit(|number, slice| Member::of_slice(&triangles[number], slice));

@@ -70,6 +70,7 @@ fn placed_triangle(corners: [DVec3; 3], away: f64, scale: f64) -> PackedTriangle
         normal: Vec3::from_dvec3(normal.try_normalize().unwrap_or(normal)),
         in_mesh: true,
         thickness: 1.0,
+        wider: 0.0,
         tip: Tip::Nowhere,
         culling: Culling::Lit,
         slicing: Slicing::WHOLE,

@@ -78,6 +78,16 @@ impl<L: SimdFloat> Flat<L> {
     }
 }
 
+impl<R: Real> PackedTriangle<R> {
+    /// The width of the mesh here for somebody who looks along these directions: at most that of a plate with these
+    /// two widths.
+    #[inline(always)]
+    fn width_from<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
+        let cosine = directions.dot(directions.like(self.normal)).abs();
+        cosine.like(self.thickness) + cosine.like(self.wider) * cosine
+    }
+}
+
 impl<R: Real> Primitive<R> for PackedTriangle<R> {
     type Description = Triangle;
     type Prepared<L: SimdFloat<Real = R>> = Shear<L>;
@@ -145,7 +155,7 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
     #[inline(always)]
     fn blocking_width<L: SimdFloat<Real = R>>(&self, directions: Vec3<L>) -> L {
         let zero = directions.x.like(R::ZERO);
-        let thickness = zero.like(self.thickness);
+        let thickness = self.width_from(directions);
         let is_left_out = match self.culling {
             Culling::Nothing => return thickness,
             Culling::Lit => zero.less(directions.dot(directions.like(self.normal))),
@@ -216,8 +226,11 @@ impl<R: Real> Primitive<R> for PackedTriangle<R> {
         let b = shear.apply(rays.origin.like(b) - rays.origin);
         let c = shear.apply(rays.origin.like(c) - rays.origin);
         let (t, u, v) = (a[2] * shear.z, b[2] * shear.z, c[2] * shear.z);
-        let mut size = t.like(self.thickness);
-        let mut rough_size = t.like(Primitive::thickness(self));
+        let mut size = self.width_from(rays.direction);
+        let mut rough_size = match self.tip {
+            Tip::Narrow => t.like(R::ZERO),
+            _ => size,
+        };
         if let Tip::Round(corner, share) = self.tip {
             let width = rays.distance_to(self.corners[corner as usize]);
             let share = f64::from(share) / SHARES_PER_UNIT;

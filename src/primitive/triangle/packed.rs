@@ -57,6 +57,9 @@ pub struct PackedTriangle<R> {
     pub in_mesh: bool,
     /// Its smallest altitude, or the thickness of the mesh there if that is known and greater.
     pub thickness: R,
+    /// How much wider the mesh is there for somebody who looks straight at the triangle: a plate is wide from above,
+    /// however thin it is.
+    pub wider: R,
     /// Where it may slip between samples.
     pub tip: Tip,
     /// How it may be left out.
@@ -80,6 +83,7 @@ impl<R: Real> PackedTriangle<R> {
             normal: Vec3::from_dvec3(normal),
             in_mesh: true,
             thickness: R::from_f64(triangle.thickness()),
+            wider: R::ZERO,
             tip: Tip::Nowhere,
             culling: Culling::Lit,
             slicing: Slicing::WHOLE,
@@ -95,6 +99,7 @@ impl<R: Real> PackedTriangle<R> {
             normal: self.normal.in_precision(),
             in_mesh: self.in_mesh,
             thickness: S::from_f64(self.thickness.to_f64()),
+            wider: S::from_f64(self.wider.to_f64()),
             tip: self.tip,
             culling: self.culling,
             slicing: self.slicing,
