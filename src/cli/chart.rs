@@ -93,9 +93,16 @@ impl ChartArgs {
 
     /// The smallest picture that shows all charts completely.
     fn least_size(&self) -> (u32, u32) {
-        // The simulation of cores is one chart for all scenes.
-        let charts = if self.cores { 1 } else { self.scenes.len() };
-        PictureLook::least_size(charts)
+        PictureLook::least_size(self.charts())
+    }
+
+    /// The number of charts: the simulation of cores is one for all scenes, and growth is one without any.
+    fn charts(&self) -> usize {
+        if self.cores {
+            1
+        } else {
+            self.scenes.len().max(1)
+        }
     }
 
     /// Refuses a size that is too small, before anything is traced.
@@ -103,9 +110,11 @@ impl ChartArgs {
         let (width, height) = self.least_size();
         match self.size {
             Some(size) if size.0 < width || size.1 < height => {
-                let charts = self.scenes.len();
+                let charts = self.charts();
+                let need = if charts == 1 { "needs" } else { "need" };
+                let charts = counted(charts as u64, "chart");
                 Err(CliError::usage(format!(
-                    "{charts} charts need a picture of {width}x{height} pixels or more"
+                    "{charts} {need} a picture of {width}x{height} pixels or more"
                 )))
             }
             _ => Ok(()),
@@ -328,6 +337,9 @@ mod tests {
         assert!(args(1, Some((480, 480))).check_size().is_ok());
         let problem = args(3, Some((480, 480))).check_size().expect_err("cut off");
         let expected = "3 charts need a picture of 960x680 pixels or more";
+        assert_eq!(problem.to_string(), expected);
+        let problem = args(0, Some((100, 100))).check_size().expect_err("cut off");
+        let expected = "1 chart needs a picture of 480x400 pixels or more";
         assert_eq!(problem.to_string(), expected);
     }
 }

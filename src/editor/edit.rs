@@ -1,6 +1,6 @@
 //! The changes that can be made to a scene, each with its name in the history.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -338,7 +338,7 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
         scene.animation_mut().forget(&gone.collect());
     }
     let packs = items.iter().filter(|item| item.kind == ItemKind::Pack);
-    let packs: Vec<usize> = packs.map(|item| item.index).collect();
+    let packs: BTreeSet<usize> = packs.map(|item| item.index).collect();
     if packs.is_empty() {
         return Ok(());
     }
@@ -354,10 +354,19 @@ fn delete(scene: &mut Scene, mut items: Vec<Item>) -> Result<(), EditError> {
             users: listed(users).unwrap_or_default(),
         });
     }
-    for index in packs {
-        scene.packs_mut().shift_remove_index(index);
-    }
+    let mut indices = 0..;
+    let is_kept = |index: usize| !packs.contains(&index);
+    let packs = scene.packs_mut();
+    packs.retain(|_, _| indices.next().is_some_and(is_kept));
     Ok(())
+}
+
+/// Renames the light or object that tracks refer to. Without any, the animation stays shared with the scene before.
+fn rename_owner(scene: &mut Scene, owner: Owner, to: &str) {
+    let mut tracks = scene.animation.tracks.iter();
+    if tracks.any(|track| track.target.owner() == Some(owner)) {
+        scene.animation_mut().rename_owner(owner, to);
+    }
 }
 
 fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
@@ -371,11 +380,11 @@ fn rename(scene: &mut Scene, item: Item, to: &str) -> Result<(), EditError> {
     match item.kind {
         ItemKind::Object => {
             to.clone_into(&mut scene.objects[item.index].name);
-            scene.animation_mut().rename_owner(Owner::Object(&from), to);
+            rename_owner(scene, Owner::Object(&from), to);
         }
         ItemKind::Light => {
             to.clone_into(&mut scene.lights[item.index].name);
-            scene.animation_mut().rename_owner(Owner::Light(&from), to);
+            rename_owner(scene, Owner::Light(&from), to);
         }
         ItemKind::Pack if scene.color_packs.contains_key(to) => {
             return Err(EditError::PackNameTaken(to.to_owned()));

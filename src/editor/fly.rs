@@ -50,6 +50,11 @@ impl Motion {
     }
 }
 
+/// Sets the height of the view window (orthographic) as near to this one as is valid.
+pub fn set_orthographic_height(camera: &mut Camera, height: f64) {
+    camera.orthographic_height = height.clamp(MIN_ORTHOGRAPHIC_HEIGHT, MAX_COORDINATE);
+}
+
 /// The angles of the camera as last computed, so that a long flight never derives them from rounded vectors again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flight {
@@ -79,8 +84,7 @@ impl Flight {
                 Projection::Perspective => next.position -= basis.z_axis * motion.forward,
                 Projection::Orthographic => {
                     let height = next.orthographic_height * (-motion.zoom).exp();
-                    next.orthographic_height =
-                        height.clamp(MIN_ORTHOGRAPHIC_HEIGHT, MAX_COORDINATE);
+                    set_orthographic_height(&mut next, height);
                 }
             }
         }

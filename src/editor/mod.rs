@@ -42,7 +42,7 @@ pub use arrange::Arrangement;
 pub use clipboard::{excerpt, read};
 pub use document::Editor;
 pub use edit::{Edit, EditError};
-pub use fly::Motion;
+pub use fly::{Motion, set_orthographic_height};
 pub use item::{Item, ItemKind};
 pub use messages::replaced_flight;
 pub use names::{free_bookmark_name, free_group_name};

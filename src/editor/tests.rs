@@ -1,4 +1,5 @@
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -49,6 +50,19 @@ fn a_drag_is_one_step_and_two_drags_are_two() {
     );
     assert_eq!(steps(&mut editor), 1);
     assert!(!editor.is_dirty(), "undone to the saved state");
+}
+
+#[test]
+fn renaming_what_has_no_keys_leaves_the_animation_shared() {
+    let mut editor = Editor::demo();
+    let before = Arc::clone(&editor.scene().animation);
+    for item in [Item::object(0), Item::light(0)] {
+        editor.apply(Action::Edit(Edit::Rename(
+            item,
+            format!("New {}", item.index),
+        )));
+        assert!(Arc::ptr_eq(&before, &editor.scene().animation));
+    }
 }
 
 #[test]

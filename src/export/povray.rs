@@ -18,8 +18,8 @@ use crate::files::without_path;
 use crate::image::Image;
 use crate::plan::PackedMesh;
 use crate::scene::{
-    Camera, Coincidence, ColorPack, Disc, Light, Mesh, Object, Plane, Projection, Render, Scene,
-    Shape, Sphere, Triangle, coincidences, unit,
+    Camera, Coincidence, ColorPack, CoordinateFrame, Disc, Light, Mesh, Object, Plane, Projection,
+    Render, Scene, Shape, Sphere, Triangle, coincidences, unit,
 };
 use crate::trace::RenderControl;
 
@@ -280,7 +280,7 @@ pub fn povray_differences(scene: &Scene) -> Vec<&'static str> {
     let undrawn = (!visible().all(is_drawn_by_povray)).then_some(
         "objects smaller than a hundred-thousandth of a unit, or larger than a million, may be missing in POV-Ray",
     );
-    let centre = scene.middle().unwrap_or_default();
+    let centre = CoordinateFrame::of(scene).map_or(DVec3::ZERO, |frame| frame.centre);
     let is_visible_overlap = |found: &Coincidence| {
         !found.extent.is_hidden() && !scene.look_alike(found.later, found.earlier)
     };

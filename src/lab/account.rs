@@ -71,7 +71,7 @@ fn what(candidate: &Candidate, default: &Candidate) -> String {
 /// Compares its time, rays and error with those of the default.
 fn compared(measured: &Measurement, default: &Measurement) -> Option<String> {
     let (time, usual) = (measured.timing()?.median, default.timing()?.median);
-    let error = measured.metrics?.rmse / default.metrics?.rmse;
+    let (error, usual_error) = (measured.metrics?.rmse, default.metrics?.rmse);
     let rays = measured.rays_per_pixel / default.rays_per_pixel;
     let speed = ratio_in_words(
         time / usual,
@@ -79,8 +79,13 @@ fn compared(measured: &Measurement, default: &Measurement) -> Option<String> {
         " slower than the default",
     );
     let speed = speed.unwrap_or("as fast as the default".to_owned());
-    let closeness =
-        ratio_in_words(error, " smaller", " larger").unwrap_or("about the same".to_owned());
+    let closeness = match (error > 0.0, usual_error > 0.0) {
+        (true, true) => ratio_in_words(error / usual_error, " smaller", " larger"),
+        (true, false) => Some("not zero, as that of the default is".to_owned()),
+        (false, true) => Some("zero".to_owned()),
+        (false, false) => None,
+    };
+    let closeness = closeness.unwrap_or("about the same".to_owned());
     let rays = match rays {
         ratio if (ratio - 1.0).abs() <= SAME_RATIO => "as many rays".to_owned(),
         ratio if ratio < 1.0 => format!("{ratio:.2}× as many rays"),

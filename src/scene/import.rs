@@ -64,7 +64,7 @@ impl Scene {
                     "its parts are one mesh of one colour, since a scene file could not hold them";
                 file.notes.push(note.to_owned());
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                scene.objects[0].name = valid_name(stem.trim());
+                scene.objects[0].name = valid_name(&stem);
                 let pack = scene.objects[0].color_pack.clone();
                 scene.packs_mut().retain(|name, _| *name == pack);
             }
@@ -190,8 +190,8 @@ fn color_pack(colors: &PartColors) -> ColorPack {
     }
 }
 
-/// Returns a valid name for a scene.
-fn valid_name(name: &str) -> String {
+/// Returns a valid name for what is in a scene.
+pub fn valid_name(name: &str) -> String {
     let plain: String = name.chars().filter(|c| !c.is_control()).take(100).collect();
     let plain = plain.trim();
     if plain.is_empty() { PLAIN_PACK } else { plain }.to_owned()

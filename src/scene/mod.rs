@@ -86,6 +86,7 @@ pub use examples::{EXAMPLES, Example};
 pub use file::{DEMO_TEXT, Document, SceneError, messages_about_objects, read_text};
 pub use frame::CoordinateFrame;
 pub use hints::{About, Hint, camera_hints, hints, scene_hints};
+pub use import::valid_name;
 pub use join::MAX_SEPARATED;
 pub use keys::{KeyId, Keys};
 pub use list::List;

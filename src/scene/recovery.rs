@@ -116,6 +116,13 @@ fn take_over(path: &Path, wanted: Option<&Path>, target: &Path) -> Option<Leftov
     let lock_path = lock_path_of(path);
     let lock = File::create(&lock_path).ok()?;
     lock.try_lock().ok()?;
+    let leftover = take_locked(path, wanted, target);
+    // Whether it was taken or not, no program uses it.
+    let _ = fs::remove_file(&lock_path);
+    leftover
+}
+
+fn take_locked(path: &Path, wanted: Option<&Path>, target: &Path) -> Option<Leftover> {
     let text = fs::read_to_string(path).ok()?;
     let (original, body) = text.strip_prefix(PATH_MARK)?.split_once('\n')?;
     let escaped: Option<String> = serde_json::from_str(original).ok();
@@ -131,7 +138,6 @@ fn take_over(path: &Path, wanted: Option<&Path>, target: &Path) -> Option<Leftov
     let mut document = Document::from_text(body).ok()?;
     // A file that cannot be renamed is not taken: it would be found again and again.
     fs::rename(path, target).ok()?;
-    let _ = fs::remove_file(&lock_path);
     document.scene.load_meshes(Path::new(original).parent());
     Some(Leftover {
         document,
@@ -163,6 +169,9 @@ mod tests {
             second.take_leftover(other).is_none(),
             "another file was asked for"
         );
+        let locks = fs::read_dir(folder.path()).expect("files").flatten();
+        let locks = locks.filter(|file| file.path().extension().is_some_and(|it| it == "lock"));
+        assert_eq!(locks.count(), 1, "its own");
         let leftover = second.take_leftover(None).expect("left behind");
         assert_eq!(leftover.path.as_deref(), Some(Path::new("/a/b.ron")));
         assert_eq!(leftover.document.to_text().expect("text"), DEMO_TEXT);

@@ -238,8 +238,7 @@ fn usual_distance(scene: &Scene) -> f64 {
         };
     };
     let (radius, middle) = ((high - low).length() / 2.0, (low + high) / 2.0);
-    let view_direction = camera.look_at.normalize_or_zero();
-    let ahead = (middle - camera.position).dot(view_direction);
+    let ahead = (middle - camera.position).dot(camera.forward());
     if ahead > radius { ahead } else { radius }
 }
 

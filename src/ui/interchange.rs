@@ -12,7 +12,9 @@ use crate::export::{JobFiles, Pattern, Sequence, povray_text, write_job, write_t
 use crate::files::{has_ending, is_same_file};
 use crate::image::Format;
 use crate::mesh::{MeshFile, Part};
-use crate::scene::{Animation, Camera, Key, MAX_BYTES, Scene, around, check, read_text};
+use crate::scene::{
+    Animation, Camera, Key, MAX_BYTES, Scene, around, check, read_text, valid_name,
+};
 use crate::words::{counted, for_shell};
 
 /// Factor between the sizes of a mesh and of the scene from which on the size is reported.
@@ -189,7 +191,7 @@ pub fn import_parts(editor: &mut Editor, path: &Path, file: MeshFile) {
     if last - first > 1 {
         // The parts of one file form a group.
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let group = free_group_name(editor.scene(), stem.trim());
+        let group = free_group_name(editor.scene(), &valid_name(&stem));
         edits.push(Edit::Group((first..last).collect(), group));
     }
     let camera = bounds.and_then(|bounds| camera_around(editor.shown(), bounds));

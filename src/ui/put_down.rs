@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 
 use crate::editor::{Edit, ItemKind, Selection};
 use crate::lab::intersect_shape;
-use crate::scene::{Scene, Shape, around};
+use crate::scene::{Scene, Shape, around, unit};
 
 /// Number of vertical lines along each side of a thing that probe what is below it.
 const LINES_PER_SIDE: usize = 5;
@@ -35,10 +35,18 @@ struct VerticalLine {
 /// The reason why nothing moves, in words.
 pub fn put_down(scene: &Scene, selected: &Selection) -> Result<Edit, &'static str> {
     let mut bodies = bodies(scene, selected);
-    let is_finite = |index: &usize| lowest_point(&scene.objects[*index].shape).is_some();
-    bodies.retain(|body: &Vec<usize>| body.iter().all(is_finite));
+    let shape = |index: &usize| &scene.objects[*index].shape;
+    bodies.retain(|body| {
+        body.iter()
+            .all(|index| shape(index).endless_plane().is_none())
+    });
     if bodies.is_empty() {
         return Err("Infinite objects, such as planes, cannot be put down");
+    }
+    // A mesh whose file is missing has no faces.
+    bodies.retain(|body| body.iter().any(|index| shape(index).bounds().is_some()));
+    if bodies.is_empty() {
+        return Err("There is nothing to put down: it has no faces");
     }
     let work = bodies.len() * (scene.objects.len() + scene.faces());
     if work > MAX_TESTS {
@@ -204,8 +212,8 @@ fn lowest_point(shape: &Shape) -> Option<DVec3> {
         Shape::Plane(_) => None,
         Shape::Sphere(ball) => Some(ball.center - DVec3::Y * ball.radius),
         Shape::Disc(disc) => {
-            let normal = disc.normal.normalize_or_zero();
-            let down = (normal * normal.y - DVec3::Y).normalize_or_zero();
+            let normal = unit(disc.normal).unwrap_or_default();
+            let down = unit(normal * normal.y - DVec3::Y).unwrap_or_default();
             Some(disc.center + down * disc.radius)
         }
         Shape::Triangle(triangle) => lowest(triangle.corners().into_iter()),
@@ -221,7 +229,7 @@ fn lowest(points: impl Iterator<Item = DVec3>) -> Option<DVec3> {
 mod tests {
     use super::*;
     use crate::editor::Item;
-    use crate::mesh::SOLIDS;
+    use crate::mesh::{SOLIDS, Triangles};
     use crate::scene::{Disc, Mesh, Object, Plane, Sphere};
 
     /// Makes a scene of these shapes above the ground.
@@ -346,6 +354,12 @@ mod tests {
             put_down(scene, &selected).err()
         };
         assert!(put(&mut scene, &[0]));
+        let mut missing = scene.clone();
+        missing.objects[0].shape = Mesh::of(Triangles::default()).into();
+        assert_eq!(
+            why(&missing),
+            Some("There is nothing to put down: it has no faces")
+        );
         assert_eq!(why(&scene), Some("It already stands on something"));
         scene.objects.remove(1);
         assert_eq!(why(&scene), Some("Nothing is below it"));

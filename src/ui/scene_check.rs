@@ -24,8 +24,8 @@ pub struct SceneCheck {
     /// Hints that do not depend on the camera, and the scene they are about.
     scene_hints: Option<(Arc<Scene>, Vec<Hint>)>,
     hints: Vec<Hint>,
-    /// Whether a hint about clipping was added for this state.
-    has_clipping_hint: bool,
+    /// The hint about clipping in the last finished picture.
+    clipping_hint: Option<Hint>,
 }
 
 /// Share of clipped pixels in the picture above which a hint is given.
@@ -44,17 +44,12 @@ impl SceneCheck {
             self.hints = camera_hints(scene);
             self.hints.extend_from_slice(&found);
             self.scene_hints = Some((Arc::clone(scene), found));
-            self.has_clipping_hint = false;
         }
     }
 
-    /// Takes the share of the finished picture of the scene that is at full brightness, 0–1.
+    /// Takes the share of a finished picture that is at full brightness, 0–1.
     pub fn take_clipped(&mut self, clipped: f64) {
-        if clipped <= MAX_CLIPPED_SHARE || self.has_clipping_hint {
-            return;
-        }
-        self.has_clipping_hint = true;
-        self.hints.push(Hint {
+        self.clipping_hint = (MAX_CLIPPED_SHARE < clipped).then(|| Hint {
             words: format!(
                 "{:.0} % of the picture is at full brightness: less light shows more",
                 clipped * 100.0
@@ -66,7 +61,8 @@ impl SceneCheck {
 
     /// Shows a button with the number of hints, which opens their list.
     pub fn show(&self, ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
-        let count = self.hints.len();
+        let hints: Vec<_> = self.hints.iter().chain(&self.clipping_hint).collect();
+        let count = hints.len();
         if count == 0 {
             return;
         }
@@ -83,7 +79,7 @@ impl SceneCheck {
         Popup::menu(&button).width(WIDTH).show(|ui| {
             let area = ScrollArea::vertical().max_height(MAX_ROWS * ROW);
             area.show_rows(ui, ROW, count, |ui, rows| {
-                for hint in &self.hints[rows] {
+                for &hint in &hints[rows] {
                     ui.horizontal(|ui| {
                         ui.label(&hint.words);
                         ui.add_space(GRID);

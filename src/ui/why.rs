@@ -48,6 +48,7 @@ impl Why {
         let explain_task = move || explain(&seen, origin, direction);
         self.waiting = Background::start("glint-why", explain_task);
         self.picture_color = None;
+        self.drawing = Background::default();
         // For a single pixel, the whole scene is planned.
         if scene.faces() <= MAX_FACES {
             let draw_task = move || drawn(&traced, origin, direction);

@@ -32,6 +32,9 @@ pub enum WindowError {
     /// The screenshot could not be written.
     #[error(transparent)]
     Screenshot(ExportError),
+    /// It was closed before the screenshot could be taken.
+    #[error("the window was closed before its picture was complete: there is no screenshot")]
+    Closed,
 }
 
 /// Opens the window on a scene file (or the demo) until it is closed, or until a screenshot of it is written to
@@ -61,8 +64,9 @@ pub fn run(
     };
     open(setup, persist_window)?;
     match outcome.map(|outcome| outcome.try_recv()) {
+        None | Some(Ok(Ok(()))) => Ok(()),
         Some(Ok(Err(error))) => Err(WindowError::Screenshot(error)),
-        _ => Ok(()),
+        Some(Err(_)) => Err(WindowError::Closed),
     }
 }
 

@@ -45,7 +45,8 @@ pub fn name_field(ui: &mut Ui, label: &str, id: Id, name: &str) -> Option<String
     if response.lost_focus() {
         ui.data_mut(|data| data.remove::<(String, String)>(id));
         let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
-        return (!is_cancelled && text.trim() != name).then_some(text);
+        let text = text.trim();
+        return (!is_cancelled && text != name).then(|| text.to_owned());
     }
     if response.changed() {
         ui.data_mut(|data| data.insert_temp(id, (name.to_owned(), text)));

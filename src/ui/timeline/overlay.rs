@@ -231,6 +231,8 @@ impl Overlay {
         }
         if response.drag_started_by(egui::PointerButton::Primary) {
             let (origin, direction) = screen.ray(at);
+            // Earlier edits are not part of the drag, and stay if it is cancelled.
+            out.actions.push(Action::BeginGesture);
             self.dragged = Some((index, (position - origin).dot(direction)));
             out.select(dragged_keys(selected, key_place));
         }

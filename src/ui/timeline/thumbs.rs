@@ -1,5 +1,6 @@
 //! Thumbnails: the views of the keys along the timeline, and the shot in a corner of the viewport.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use egui::{Context, Id, Rect, Sense, TextureHandle, TextureOptions, Ui, pos2, vec2};
@@ -101,14 +102,23 @@ impl Thumbs {
             && requested
                 .is_none_or(|requested| !shows_same(&requested.0, scene) || requested.1 != scale)
         {
-            self.requested = Some((Arc::clone(scene), scale));
+            let before = self.requested.replace((Arc::clone(scene), scale));
             // With very many keys, only every `stride`-th one has a thumbnail.
             let stride = keys.len().div_ceil(MAX_KEY_THUMBNAILS).max(1);
             if self.stride != stride {
                 self.keys.clear();
                 self.stride = stride;
             }
-            self.keys.resize(keys.len(), None);
+            if self.keys.len() != keys.len() {
+                // Until they are traced again, keys keep their pictures, wherever they stand in the list by now.
+                let before = before.iter().flat_map(|(scene, _)| &scene.animation.keys);
+                let pictures = before.zip(self.keys.drain(..));
+                let mut pictures: HashMap<_, _> =
+                    pictures.map(|(key, it)| (key.time.to_bits(), it)).collect();
+                let times = keys.iter().map(|key| key.time.to_bits());
+                let kept = times.map(|time| pictures.remove(&time).flatten());
+                self.keys.extend(kept);
+            }
             let job_of = |(index, key): (usize, &crate::scene::Key<_>)| ThumbnailJob {
                 name: index as u64,
                 scene: shot(scene, editor.path_of_camera(), key.time),

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::screen::Screen;
 use super::subject::Movable;
 use crate::editor::{Editor, Selection};
-use crate::scene::{Scene, Shape};
+use crate::scene::{Scene, Shape, unit};
 use crate::ui::theme::{GRID, palette};
 
 /// Length of the arrows, in points.
@@ -224,7 +224,7 @@ fn shape_handles(
     add: &mut impl FnMut(Handle, Option<Vec<Pos2>>),
 ) {
     let normal = |from: DVec3, normal: DVec3| {
-        let tip = from + normal.normalize_or_zero() * length * RING_RADIUS;
+        let tip = from + unit(normal)? * length * RING_RADIUS;
         Some(vec![screen.place(from)?, screen.place(tip)?])
     };
     match subject {
@@ -241,7 +241,7 @@ fn shape_handles(
                 );
             }
             Shape::Disc(disc) => {
-                let axis = disc.normal.normalize_or(DVec3::Y);
+                let axis = unit(disc.normal).unwrap_or(DVec3::Y);
                 let rim = ring(screen, disc.center, axis, disc.radius);
                 add(Handle::Radius, Some(rim));
                 add(Handle::Normal, normal(disc.center, disc.normal));

@@ -9,7 +9,7 @@ use super::gizmo::{ARROW_LENGTH, AXES, Handle, RING_RADIUS, label};
 use super::screen::Screen;
 use super::subject::Movable;
 use crate::editor::Edit;
-use crate::scene::{Disc, Plane, Shape, format_number};
+use crate::scene::{Disc, Plane, Shape, format_number, unit};
 use crate::ui::number::parse_number;
 
 /// Angle to which rotations snap, in degrees.
@@ -281,7 +281,7 @@ impl Grip {
         };
         let length = screen.unit_at(*point) * ARROW_LENGTH * RING_RADIUS;
         // Wherever the arrow was grabbed, its tip moves as the pointer does.
-        let tip = screen.place(*point + normal.normalize_or_zero() * length)?;
+        let tip = screen.place(*point + unit(*normal)? * length)?;
         let (origin, direction) = screen.ray(pull.at + (tip - self.grabbed_at.0));
         let arm = *point - origin;
         let along = arm.dot(direction);

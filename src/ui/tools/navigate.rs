@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::screen::Screen;
 use super::subject::Movable;
-use crate::editor::Editor;
+use crate::editor::{Editor, set_orthographic_height};
 use crate::scene::{Camera, Framing, Projection, around};
 use crate::ui::flying::DOLLY;
 
@@ -39,11 +39,12 @@ pub fn dollied(camera: &Camera, point: DVec3, wheel: f64) -> Camera {
     match camera.projection {
         Projection::Perspective => next.position = point + (camera.position - point) * factor,
         Projection::Orthographic => {
-            let forward = camera.look_at.normalize_or_zero();
+            set_orthographic_height(&mut next, camera.orthographic_height * factor);
+            let factor = next.orthographic_height / camera.orthographic_height;
+            let forward = camera.forward();
             let arm = point - camera.position;
             // The view window shrinks around the point; its distance does not matter.
             next.position += (arm - forward * arm.dot(forward)) * (1.0 - factor);
-            next.orthographic_height *= factor;
         }
     }
     next
@@ -69,7 +70,7 @@ pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) 
         projection,
         ..camera.clone()
     };
-    let forward = camera.look_at.normalize_or_zero();
+    let forward = camera.forward();
     let depth = about.map(|about| (about - camera.position).dot(forward));
     let Some(depth) = depth.filter(|depth| 0.0 < *depth && projection != camera.projection) else {
         return next;
@@ -79,7 +80,9 @@ pub fn projected(camera: &Camera, about: Option<DVec3>, projection: Projection) 
         return next;
     }
     match projection {
-        Projection::Orthographic => next.orthographic_height = depth / camera.projection_distance,
+        Projection::Orthographic => {
+            set_orthographic_height(&mut next, depth / camera.projection_distance);
+        }
         Projection::Perspective => next.position += forward * (depth - equal_size_depth),
     }
     next
@@ -141,6 +144,7 @@ fn sides(framing: &Framing, aspect: f64) -> [(DVec3, DVec3); 5] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{MAX_COORDINATE, MIN_ORTHOGRAPHIC_HEIGHT};
     use egui::{Rect, pos2, vec2};
 
     fn screen(camera: &Camera) -> Screen {
@@ -198,6 +202,19 @@ mod tests {
             let panned = panned(&camera, &screen(&camera), point, moved);
             let after = screen(&panned).place(point).expect("in front");
             assert!((after - before - moved).length() < 1e-2, "{after} {before}");
+        }
+    }
+
+    #[test]
+    fn parallel_projection_is_zoomed_as_far_as_is_valid() {
+        let [_, camera] = cameras();
+        let point = camera.position + DVec3::new(-60.0, -50.0, -90.0);
+        for (wheel, limit) in [(1e6, MIN_ORTHOGRAPHIC_HEIGHT), (-1e6, MAX_COORDINATE)] {
+            let end = dollied(&camera, point, wheel);
+            assert_eq!(end.orthographic_height, limit);
+            assert!(end.position.is_finite());
+            // There, it stays.
+            assert_eq!(dollied(&end, point, wheel), end);
         }
     }
 
