@@ -150,7 +150,7 @@ fn copy_tracks(scene: &mut Scene, owner: Owner, copy: &str, offset: DVec3) {
 /// Gives each of the objects at these indices its own copy of its color pack, unless it is the only one that uses it.
 pub fn make_packs_unique(scene: &mut Scene, objects: &[usize]) {
     let mut users: HashMap<String, usize> = HashMap::new();
-    for item in Item::everything(scene).filter(|item| item.kind != ItemKind::Pack) {
+    for item in Item::everything(scene) {
         if let Some(pack) = item.color_pack(scene) {
             *users.entry(pack.to_owned()).or_default() += 1;
         }

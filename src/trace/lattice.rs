@@ -184,7 +184,7 @@ impl<R: Real> Lattice<R> {
         cell.detail == EdgeDetail::Thin && least < R::from_f64(FARTHEST_CORNER * cell.width())
     }
 
-    /// Returns whether the first samples taken show a shadow that ends near them.
+    /// Returns whether any sample so far is in a shadow that ends near it.
     pub fn has_shadows(&self) -> bool {
         self.samples.iter().any(|sample| sample.shadows != 0)
     }

@@ -182,6 +182,7 @@ impl<L: SimdFloat> Sampler<L> {
         self.trace_requested(engine, candidates, tile, EdgeDetail::Thin);
         self.refinement.divide();
         self.trace_requested(engine, candidates, tile, EdgeDetail::Borders);
+        // And so is light between shadows.
         self.refinement.divide_gaps(limits);
         self.trace_requested(engine, candidates, tile, EdgeDetail::Borders);
         self.refine(engine, candidates, tile, (limits, messages), colors);

@@ -61,8 +61,8 @@ impl SceneCheck {
 
     /// Shows a button with the number of hints, which opens their list.
     pub fn show(&self, ui: &mut Ui, scene: &Scene, out: &mut UiRequests) {
-        let hints: Vec<_> = self.hints.iter().chain(&self.clipping_hint).collect();
-        let count = hints.len();
+        let hints = || self.hints.iter().chain(&self.clipping_hint);
+        let count = self.hints.len() + usize::from(self.clipping_hint.is_some());
         if count == 0 {
             return;
         }
@@ -79,7 +79,7 @@ impl SceneCheck {
         Popup::menu(&button).width(WIDTH).show(|ui| {
             let area = ScrollArea::vertical().max_height(MAX_ROWS * ROW);
             area.show_rows(ui, ROW, count, |ui, rows| {
-                for &hint in &hints[rows] {
+                for hint in hints().skip(rows.start).take(rows.len()) {
                     ui.horizontal(|ui| {
                         ui.label(&hint.words);
                         ui.add_space(GRID);
@@ -116,5 +116,29 @@ fn fix_for(scene: &Scene, hint: &Hint) -> Option<(&'static str, Edit)> {
             Some(("Hide", Edit::visible(scene, Item::object(index), false)?))
         }
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::Action;
+
+    #[test]
+    fn the_hint_about_brightness_follows_the_picture_and_outlives_edits() {
+        let mut check = SceneCheck::default();
+        let mut editor = Editor::demo();
+        check.update(&editor, false);
+        let words = |check: &SceneCheck| check.clipping_hint.as_ref().map(|it| it.words.clone());
+        for (clipped, expected) in [(0.3, Some("30 %")), (0.07, Some("7 %")), (0.01, None)] {
+            check.take_clipped(clipped);
+            let hint = words(&check);
+            assert_eq!(hint.is_some(), expected.is_some(), "{clipped}");
+            assert!(hint.is_none_or(|hint| expected.is_some_and(|it| hint.starts_with(it))));
+        }
+        check.take_clipped(0.3);
+        editor.apply(Action::Edit(Edit::AddPack));
+        check.update(&editor, false);
+        assert!(words(&check).is_some(), "the picture has not changed");
     }
 }
